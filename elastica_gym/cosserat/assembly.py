@@ -1,0 +1,124 @@
+"""From a description of rods and surroundings to a Model, and a State at rest."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .model import BLOCK, LEAD, Array, Control, Model, Planes, State, Waves, aligned_zeros, make_control, make_state
+from .rod import Rod, require_not_negative
+from .surroundings import Plane, Wave
+
+
+def build_model(
+    rods: Sequence[Rod], *, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
+    gravity: ArrayLike = (0.0, 0.0, 0.0), activation_time: float = 0.0, is_loaded: bool = False,
+) -> Model:  # fmt: skip
+    """Lay rods out one after another and collect what acts on them.
+
+    Parameters
+    ----------
+    rods : sequence of Rod
+        At least one.
+    planes : sequence of Plane
+        Touched by all rods.
+    waves : sequence of Wave
+        Each on the rod it names.
+    gravity : array_like
+        Acceleration [m/s^2], (3,).
+    activation_time : float
+        Time constant with which muscle couples approach those set in Control, 0 for immediately [s].
+    is_loaded : bool
+        Whether ``Control.force`` and ``Control.torque`` act.
+
+    Raises
+    ------
+    ValueError
+        If there are no rods, or a wave names a rod that does not exist.
+    """
+    if not rods:
+        raise ValueError("rods is empty; a model needs at least one")
+    require_not_negative("activation_time", activation_time)
+    counts = np.array([rod.n_elements for rod in rods])
+    first = LEAD + np.concatenate([[0], np.cumsum(counts + 1)[:-1]])
+    occupied = int(np.sum(counts + 1))
+    slots = -(-(LEAD + occupied) // BLOCK) * BLOCK + BLOCK
+    fields: dict[str, Any] = {name: aligned_zeros((slots,)) for name in _SCALAR}
+    fields |= {name: aligned_zeros((rows, slots)) for name, rows in _ROWS.items()}
+    fields["inv_rest_length"][:] = fields["inv_rest_voronoi_length"][:] = 1.0
+    for rod, start in zip(rods, first, strict=True):
+        _lay_out(fields, rod, int(start))
+    return Model(
+        first_slot=first.astype(np.int64), n_elements=counts.astype(np.int64), **fields,
+        gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_viscous=bool(fields["viscosity"].any()),
+        activation_time=float(activation_time), planes=_plane_table(planes), waves=_wave_table(waves, rods, first, slots),
+    )  # fmt: skip
+
+
+_SCALAR = ("rest_length", "inv_rest_length", "rest_voronoi_length", "inv_rest_voronoi_length", "section",
+           "mass", "inv_mass", "damping_rate")  # fmt: skip
+_ROWS = {"shear": 3, "bend": 3, "inertia": 3, "inv_inertia": 3, "share": 2, "weight": 2, "viscosity": 2}
+
+
+def _lay_out(fields: dict[str, Array], rod: Rod, start: int) -> None:
+    """Write a rod's constants into its slots."""
+    n = rod.n_elements
+    nodes, elements, voronoi = slice(start, start + n + 1), slice(start, start + n), slice(start, start + n - 1)
+    m = rod.nodal_mass
+    share = np.full((2, n), 0.5)
+    share[0, 0] = share[1, -1] = 1.0
+    for name, where, value in (
+        ("mass", nodes, m), ("inv_mass", nodes, 1.0 / m), ("damping_rate", nodes, rod.damping_rate),
+        ("rest_length", elements, rod.rest_length), ("inv_rest_length", elements, 1.0 / rod.rest_length),
+        ("section", elements, rod.radius**2 * rod.rest_length),
+        ("shear", elements, rod.shear_stiffness), ("inertia", elements, rod.inertia),
+        ("inv_inertia", elements, 1.0 / rod.inertia), ("share", elements, share),
+        ("weight", elements, np.stack([m[:-1], m[1:]]) / (m[:-1] + m[1:])),
+        ("viscosity", elements, np.array([[rod.viscosity], [rod.torque_viscosity]])),
+        ("rest_voronoi_length", voronoi, rod.rest_voronoi_length),
+        ("inv_rest_voronoi_length", voronoi, 1.0 / rod.rest_voronoi_length), ("bend", voronoi, rod.bend_stiffness),
+    ):  # fmt: skip
+        fields[name][..., where] = value
+
+
+def _plane_table(planes: Sequence[Plane]) -> Planes:
+    def column(name: str, width: int) -> Array:
+        values = np.array([getattr(plane, name) for plane in planes], dtype=np.float64)
+        return values.reshape((len(planes), width) if width > 1 else len(planes))
+
+    normal = column("normal", 3)
+    return Planes(
+        origin=column("origin", 3), normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
+        stiffness=column("stiffness", 1), damping=column("damping", 1),
+        surface_tolerance=column("surface_tolerance", 1), slip_tolerance=column("slip_tolerance", 1),
+        kinetic_friction=column("kinetic_friction", 3), static_friction=column("static_friction", 3),
+    )  # fmt: skip
+
+
+def _wave_table(waves: Sequence[Wave], rods: Sequence[Rod], first: np.ndarray, slots: int) -> Waves:
+    sine, cosine = aligned_zeros((len(waves), slots)), aligned_zeros((len(waves), slots))
+    for row, wave in enumerate(waves):
+        if not 0 <= wave.rod < len(rods):
+            raise ValueError(f"wave {row} is on rod {wave.rod}, but there are rods 0 to {len(rods) - 1}")
+        n, start = rods[wave.rod].n_elements, int(first[wave.rod])
+        for table, couple in zip((sine, cosine), wave.profiles(rods[wave.rod].rest_length), strict=True):
+            # an element gets the couple of the joint before it, and minus that of the joint after it
+            table[row, start : start + n] = -np.diff(couple, prepend=0.0, append=0.0)
+    return Waves(
+        axis=np.array([wave.axis for wave in waves], dtype=np.float64).reshape(len(waves), 3), sine=sine, cosine=cosine,
+        angular_frequency=np.array([2.0 * np.pi / wave.period for wave in waves], dtype=np.float64),
+        ramp_time=np.array([wave.ramp_time for wave in waves], dtype=np.float64),
+    )  # fmt: skip
+
+
+def at_rest(model: Model, rods: Sequence[Rod], n_envs: int = 1) -> tuple[State, Control]:
+    """Allocate State and Control, with every rod where it was described, at rest, in all environments."""
+    state, control = make_state(model, n_envs), make_control(model, n_envs)
+    for rod, start in zip(rods, model.first_slot, strict=True):
+        n = rod.n_elements
+        state.x[:, :, start : start + n + 1] = rod.position
+        state.Q[:, :, :, start : start + n] = rod.directors
+        control.rest_kappa[:, :, start : start + n - 1] = rod.rest_kappa
+        control.rest_sigma[:, :, start : start + n] = rod.rest_sigma
+    return state, control

@@ -1,0 +1,64 @@
+"""Drift: positions and directors move with their velocities."""
+
+from .compiler import stage
+from .rotations import sine_over_angle, versine_over_angle_squared
+
+
+@stage
+def kinematics(n, h, x, v, Q, w):
+    """Advance x by h v, and Q by the rotation exp(-h [w]x), over a time h (Gazzola et al. 2018, eq. 4.4)."""
+    for k in range(n):
+        x[0][k] += h * v[0][k]
+        x[1][k] += h * v[1][k]
+        x[2][k] += h * v[2][k]
+
+        # exp(-[a]x) = I - A [a]x + B [a]x^2, with A = sin|a|/|a| and B = (1 - cos|a|)/|a|^2
+        a0, a1, a2 = h * w[0][k], h * w[1][k], h * w[2][k]
+        s = a0 * a0 + a1 * a1 + a2 * a2
+        A = sine_over_angle(s)
+        B = versine_over_angle_squared(s)
+        A0, A1, A2 = A * a0, A * a1, A * a2
+        B0, B1, B2 = B * a0, B * a1, B * a2
+        R00 = 1.0 - B1 * a1 - B2 * a2
+        R11 = 1.0 - B0 * a0 - B2 * a2
+        R22 = 1.0 - B0 * a0 - B1 * a1
+        R01, R10 = B0 * a1 + A2, B0 * a1 - A2
+        R02, R20 = B0 * a2 - A1, B0 * a2 + A1
+        R12, R21 = B1 * a2 + A0, B1 * a2 - A0
+
+        q00, q01, q02 = Q[0][0][k], Q[0][1][k], Q[0][2][k]
+        q10, q11, q12 = Q[1][0][k], Q[1][1][k], Q[1][2][k]
+        q20, q21, q22 = Q[2][0][k], Q[2][1][k], Q[2][2][k]
+        Q[0][0][k] = R00 * q00 + R01 * q10 + R02 * q20
+        Q[0][1][k] = R00 * q01 + R01 * q11 + R02 * q21
+        Q[0][2][k] = R00 * q02 + R01 * q12 + R02 * q22
+        Q[1][0][k] = R10 * q00 + R11 * q10 + R12 * q20
+        Q[1][1][k] = R10 * q01 + R11 * q11 + R12 * q21
+        Q[1][2][k] = R10 * q02 + R11 * q12 + R12 * q22
+        Q[2][0][k] = R20 * q00 + R21 * q10 + R22 * q20
+        Q[2][1][k] = R20 * q01 + R21 * q11 + R22 * q21
+        Q[2][2][k] = R20 * q02 + R21 * q12 + R22 * q22
+
+
+@stage
+def orthonormalise(n, Q):
+    """Take rounding out of the directors: one Newton step Q <- (3 I - Q Q^T) Q / 2 to the nearest rotation."""
+    for k in range(n):
+        q00, q01, q02 = Q[0][0][k], Q[0][1][k], Q[0][2][k]
+        q10, q11, q12 = Q[1][0][k], Q[1][1][k], Q[1][2][k]
+        q20, q21, q22 = Q[2][0][k], Q[2][1][k], Q[2][2][k]
+        g00 = 1.5 - 0.5 * (q00 * q00 + q01 * q01 + q02 * q02)
+        g11 = 1.5 - 0.5 * (q10 * q10 + q11 * q11 + q12 * q12)
+        g22 = 1.5 - 0.5 * (q20 * q20 + q21 * q21 + q22 * q22)
+        g01 = -0.5 * (q00 * q10 + q01 * q11 + q02 * q12)
+        g02 = -0.5 * (q00 * q20 + q01 * q21 + q02 * q22)
+        g12 = -0.5 * (q10 * q20 + q11 * q21 + q12 * q22)
+        Q[0][0][k] = g00 * q00 + g01 * q10 + g02 * q20
+        Q[0][1][k] = g00 * q01 + g01 * q11 + g02 * q21
+        Q[0][2][k] = g00 * q02 + g01 * q12 + g02 * q22
+        Q[1][0][k] = g01 * q00 + g11 * q10 + g12 * q20
+        Q[1][1][k] = g01 * q01 + g11 * q11 + g12 * q21
+        Q[1][2][k] = g01 * q02 + g11 * q12 + g12 * q22
+        Q[2][0][k] = g02 * q00 + g12 * q10 + g22 * q20
+        Q[2][1][k] = g02 * q01 + g12 * q11 + g22 * q21
+        Q[2][2][k] = g02 * q02 + g12 * q12 + g22 * q22

@@ -1,0 +1,63 @@
+"""Loads: what acts on nodes and elements, from inside the rod and from outside."""
+
+from math import cos, sin
+
+from .compiler import ONE, stage
+
+
+@stage
+def balance(n, stress, moment, transport, mass, gravity, force, torque):
+    """Sum the internal loads and gravity (Gazzola et al. 2018, eq. 2.20, 2.21).
+
+    Differences of n and of tau_L/E^3 between neighbours, and half of each neighbour's
+    kappa x tau_L D^/E^3. Adds to the torques of strains.
+    """
+    g0, g1, g2 = gravity[0], gravity[1], gravity[2]
+    for k in range(n):
+        j = k + ONE
+        force[0][j] = stress[0][j] - stress[0][k] + mass[j] * g0
+        force[1][j] = stress[1][j] - stress[1][k] + mass[j] * g1
+        force[2][j] = stress[2][j] - stress[2][k] + mass[j] * g2
+        torque[0][j] += moment[0][j] - moment[0][k] + 0.5 * (transport[0][j] + transport[0][k])
+        torque[1][j] += moment[1][j] - moment[1][k] + 0.5 * (transport[1][j] + transport[1][k])
+        torque[2][j] += moment[2][j] - moment[2][k] + 0.5 * (transport[2][j] + transport[2][k])
+
+
+@stage
+def external(n, applied_force, applied_torque, force, torque):
+    """Add the loads that Control holds."""
+    for k in range(n):
+        force[0][k] += applied_force[0][k]
+        force[1][k] += applied_force[1][k]
+        force[2][k] += applied_force[2][k]
+        torque[0][k] += applied_torque[0][k]
+        torque[1][k] += applied_torque[1][k]
+        torque[2][k] += applied_torque[2][k]
+
+
+@stage
+def viscosity(n, v, w, length, nu, force, torque):
+    """Subtract the documented damping: nu l times the mean nodal velocity, and nu_torque l w."""
+    for k in range(n):
+        # half of each element's force goes to each of its nodes; a ghost's nu is zero
+        j = k + ONE
+        a, b = 0.25 * nu[0][k] * length[k], 0.25 * nu[0][j] * length[j]
+        force[0][j] -= a * (v[0][k] + v[0][j]) + b * (v[0][j] + v[0][j + ONE])
+        force[1][j] -= a * (v[1][k] + v[1][j]) + b * (v[1][j] + v[1][j + ONE])
+        force[2][j] -= a * (v[2][k] + v[2][j]) + b * (v[2][j] + v[2][j + ONE])
+        c = nu[1][j] * length[j]
+        torque[0][j] -= c * w[0][j]
+        torque[1][j] -= c * w[1][j]
+        torque[2][j] -= c * w[2][j]
+
+
+@stage
+def wave(n, strength, phase, axis, sine, cosine, Q, torque):
+    """Add a travelling wave of muscle couple at the angle ``phase`` = omega t (Gazzola et al. 2018, sec. 5.2)."""
+    S, C = strength * sin(phase), strength * cos(phase)
+    a0, a1, a2 = axis[0], axis[1], axis[2]
+    for k in range(n):
+        m = S * sine[k] + C * cosine[k]
+        torque[0][k] += m * (Q[0][0][k] * a0 + Q[0][1][k] * a1 + Q[0][2][k] * a2)
+        torque[1][k] += m * (Q[1][0][k] * a0 + Q[1][1][k] * a1 + Q[1][2][k] * a2)
+        torque[2][k] += m * (Q[2][0][k] * a0 + Q[2][1][k] * a1 + Q[2][2][k] * a2)

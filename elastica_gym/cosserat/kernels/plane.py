@@ -1,0 +1,156 @@
+"""A plane that rods lie on: its response, and anisotropic friction (Gazzola et al. 2018, appendix D).
+
+Forces act on elements, at the point of contact; half goes to each node. The plane answers to the
+net force, so it comes after every other load. n is the plane's normal, a the in-plane unit tangent
+of the element, b = a x n the direction it rolls in, N the force with which the plane carries it.
+"""
+
+from .compiler import ONE, inline, stage
+from .roots import inverse_sqrt
+
+
+@inline
+def sticking(speed, inv_tolerance):
+    """Return how much of friction is static: 1 up to the slip tolerance, falling to 0 at twice of it."""
+    excess = abs(speed) * inv_tolerance - 1.0
+    excess = excess if excess > 0.0 else 0.0
+    excess = excess if excess < 1.0 else 1.0
+    return 1.0 - excess
+
+
+@inline
+def towards(direction, forward, backward):
+    """Return the coefficient of friction for motion or a push along +t, along -t, or neither."""
+    moving = backward if direction < 0.0 else 0.5 * (forward + backward)
+    return forward if direction > 0.0 else moving
+
+
+@stage
+def slip(
+    n, normal, origin, k_plane, nu_plane, surface_tol, slip_tol, mu, mu_static,
+    x, v, Q, w, radius, share, weight, force, torque,
+    push, axial, axial_material, hold, hold_rolling, normal_force,
+):  # fmt: skip
+    """Compute the plane's response and kinetic friction on each element.
+
+    Leaves the force on the element in ``push``, a in ``axial`` and in the material frame, the most
+    that static friction may be, s mu N, in ``hold`` and ``hold_rolling``, and adds N to ``normal_force``.
+    Returns how many elements stick at least in part.
+    """
+    n0, n1, n2 = normal[0], normal[1], normal[2]
+    height = n0 * origin[0] + n1 * origin[1] + n2 * origin[2]
+    forward, backward, sideways = mu[0], mu[1], mu[2]
+    may_hold = mu_static[0] + mu_static[1] + mu_static[2]
+    static_sideways = mu_static[2]
+    inv_slip_tol = 1.0 / slip_tol
+    n_sticking = 0
+    for k in range(n):
+        j = k + ONE
+        d0, d1, d2 = x[0][j] - x[0][k], x[1][j] - x[1][k], x[2][j] - x[2][k]
+        u0 = weight[0][k] * v[0][k] + weight[1][k] * v[0][j]
+        u1 = weight[0][k] * v[1][k] + weight[1][k] * v[1][j]
+        u2 = weight[0][k] * v[2][k] + weight[1][k] * v[2][j]
+        fn = (
+            n0 * (share[0][k] * force[0][k] + share[1][k] * force[0][j])
+            + n1 * (share[0][k] * force[1][k] + share[1][k] * force[1][j])
+            + n2 * (share[0][k] * force[2][k] + share[1][k] * force[2][j])
+        )
+
+        # response: carries the push, and resists penetration and approach
+        r = radius[k]
+        centre = n0 * (x[0][k] + 0.5 * d0) + n1 * (x[1][k] + 0.5 * d1) + n2 * (x[2][k] + 0.5 * d2)
+        gap = centre - height - r
+        touching = 1.0 if gap <= surface_tol else 0.0
+        # a ghost has no section
+        touching = touching if r > 0.0 else 0.0
+        un = n0 * u0 + n1 * u1 + n2 * u2
+        N = -fn if fn < 0.0 else 0.0
+        N *= touching
+        depth = gap if gap < 0.0 else 0.0
+        response = N - touching * (k_plane * depth + nu_plane * un)
+
+        # directions
+        dn = n0 * d0 + n1 * d1 + n2 * d2
+        a0, a1, a2 = d0 - dn * n0, d1 - dn * n1, d2 - dn * n2
+        aa = a0 * a0 + a1 * a1 + a2 * a2
+        inv_a = inverse_sqrt(aa)
+        a0, a1, a2 = a0 * inv_a, a1 * inv_a, a2 * inv_a
+        b0, b1, b2 = a1 * n2 - a2 * n1, a2 * n0 - a0 * n2, a0 * n1 - a1 * n0
+        m0 = Q[0][0][k] * a0 + Q[0][1][k] * a1 + Q[0][2][k] * a2
+        m1 = Q[1][0][k] * a0 + Q[1][1][k] * a1 + Q[1][2][k] * a2
+        m2 = Q[2][0][k] * a0 + Q[2][1][k] * a1 + Q[2][2][k] * a2
+
+        # slip velocities: the lowest point moves with the element and with its spin, W x (-r n) . b = -r W . a
+        va = u0 * a0 + u1 * a1 + u2 * a2
+        vb = u0 * b0 + u1 * b1 + u2 * b2 - r * (w[0][k] * m0 + w[1][k] * m1 + w[2][k] * m2)
+        inv_speed = inverse_sqrt(va * va + vb * vb)
+        sa, sb = sticking(va, inv_slip_tol), sticking(vb, inv_slip_tol)
+
+        # kinetic friction, opposite to the slip, with the torque of its rolling part
+        fa = -(1.0 - sa) * towards(va, forward, backward) * N * va * inv_speed
+        fb = -(1.0 - sb) * sideways * N * vb * inv_speed
+        push[0][k] = response * n0 + fa * a0 + fb * b0
+        push[1][k] = response * n1 + fa * a1 + fb * b1
+        push[2][k] = response * n2 + fa * a2 + fb * b2
+        torque[0][k] -= r * fb * m0
+        torque[1][k] -= r * fb * m1
+        torque[2][k] -= r * fb * m2
+
+        axial[0][k], axial[1][k], axial[2][k] = a0, a1, a2
+        axial_material[0][k], axial_material[1][k], axial_material[2][k] = m0, m1, m2
+        hold[k], hold_rolling[k] = sa * N, sb * static_sideways * N
+        normal_force[k] += N
+        n_sticking += 1 if (sa + sb) * N * may_hold > 0.0 else 0
+    return n_sticking
+
+
+@stage
+def stick(
+    n, normal, mu_static, radius, share, force, axial, axial_material, hold, hold_rolling,
+    push, torque,
+):  # fmt: skip
+    """Compute static friction from the forces that the response and kinetic friction have already changed.
+
+    Along a it cancels the push, along b it makes the element roll without slip, both up to s mu N.
+    """
+    n0, n1, n2 = normal[0], normal[1], normal[2]
+    forward, backward = mu_static[0], mu_static[1]
+    for k in range(n):
+        j = k + ONE
+        f0 = share[0][k] * force[0][k] + share[1][k] * force[0][j]
+        f1 = share[0][k] * force[1][k] + share[1][k] * force[1][j]
+        f2 = share[0][k] * force[2][k] + share[1][k] * force[2][j]
+        a0, a1, a2 = axial[0][k], axial[1][k], axial[2][k]
+        b0, b1, b2 = a1 * n2 - a2 * n1, a2 * n0 - a0 * n2, a0 * n1 - a1 * n0
+        m0, m1, m2 = axial_material[0][k], axial_material[1][k], axial_material[2][k]
+        r = radius[k]
+
+        fa = f0 * a0 + f1 * a1 + f2 * a2
+        most = hold[k] * towards(fa, forward, backward)
+        fa = fa if fa < most else most
+        fa = fa if fa > -most else -most
+
+        fb = f0 * b0 + f1 * b1 + f2 * b2
+        twist = torque[0][k] * m0 + torque[1][k] * m1 + torque[2][k] * m2
+        # a ghost has neither radius nor hold
+        fb = (fb - 2.0 * twist / (r if r > 0.0 else 1.0)) * (1.0 / 3.0)
+        most = hold_rolling[k]
+        fb = fb if fb < most else most
+        fb = fb if fb > -most else -most
+
+        push[0][k] = -fa * a0 - fb * b0
+        push[1][k] = -fa * a1 - fb * b1
+        push[2][k] = -fa * a2 - fb * b2
+        torque[0][k] += r * fb * m0
+        torque[1][k] += r * fb * m1
+        torque[2][k] += r * fb * m2
+
+
+@stage
+def to_nodes(n, push, force):
+    """Give half of each element's force to each of its nodes."""
+    for k in range(n):
+        j = k + ONE
+        force[0][j] += 0.5 * (push[0][k] + push[0][j])
+        force[1][j] += 0.5 * (push[1][k] + push[1][j])
+        force[2][j] += 0.5 * (push[2][k] + push[2][j])

@@ -1,0 +1,208 @@
+"""Model, State and Control: what stays, what a step changes, what an agent sets.
+
+All arrays are C-contiguous float64 unless said otherwise, in SI units. B is the number of
+environments. Rods stand one after another along the last axis, which has L slots: first an empty
+one (``LEAD``), then for a rod of n elements n + 1 slots. Its nodes use all of them; its elements the
+first n and its Voronoi points (between elements k and k + 1) the first n - 1. What is left over,
+the *ghosts*, carries zero stiffness, zero mass and zero inverse mass, so that every stage runs
+over all slots without a branch and no rod feels its neighbour. The slots are padded to a multiple
+of ``BLOCK``, so that loops have no remainder, and one empty block follows for reading k + 1.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+LEAD = 1
+BLOCK = 8
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+class Planes(NamedTuple):
+    """The P planes that all rods may touch."""
+
+    origin: Array
+    """A point of the plane [m], (P, 3)"""
+    normal: Array
+    """Unit normal, towards the free side, (P, 3)"""
+    stiffness: Array
+    """Restoring force per penetration k [N/m], (P,)"""
+    damping: Array
+    """Damping force per normal velocity nu [N s/m], (P,)"""
+    surface_tolerance: Array
+    """Gap below which an element is in contact [m], (P,)"""
+    slip_tolerance: Array
+    """Slip velocity below which friction is static [m/s], (P,)"""
+    kinetic_friction: Array
+    """Coefficients forward, backward and sideways, (P, 3)"""
+    static_friction: Array
+    """Coefficients forward, backward and sideways, (P, 3)"""
+
+
+class Waves(NamedTuple):
+    """The W travelling waves of muscle couple along rods (Gazzola et al. 2018, section 5.2)."""
+
+    axis: Array
+    """Direction of the couple in the lab, (W, 3)"""
+    sine: Array
+    """What multiplies sin(omega t): the net couple on each element [N m], (W, L)"""
+    cosine: Array
+    """What multiplies cos(omega t): the net couple on each element [N m], (W, L)"""
+    angular_frequency: Array
+    """omega [rad/s], (W,)"""
+    ramp_time: Array
+    """Time over which the wave grows linearly to full strength, 0 for none [s], (W,)"""
+
+
+class Model(NamedTuple):
+    """What does not change during an episode."""
+
+    first_slot: Index
+    """Slot of each rod's first node, (R,) int64"""
+    n_elements: Index
+    """Number of elements of each rod, (R,) int64"""
+    rest_length: Array
+    """Element length at rest l^ [m], (L,)"""
+    inv_rest_length: Array
+    """1 / l^ [1/m], one at ghosts, (L,)"""
+    rest_voronoi_length: Array
+    """Voronoi length at rest D^ [m], (L,)"""
+    inv_rest_voronoi_length: Array
+    """1 / D^ [1/m], one at ghosts, (L,)"""
+    section: Array
+    """Element volume over pi, the square of the radius times the length [m^3], (L,)"""
+    shear: Array
+    """Diagonal of the shear and stretch stiffness S [N], (3, L)"""
+    bend: Array
+    """Diagonal of the bending and twist stiffness B [N m^2], (3, L)"""
+    mass: Array
+    """Nodal mass m [kg], (L,)"""
+    inv_mass: Array
+    """1 / m [1/kg], zero at ghosts, (L,)"""
+    inertia: Array
+    """Diagonal of the element's moment of inertia J [kg m^2], (3, L)"""
+    inv_inertia: Array
+    """Diagonal of its inverse [1/(kg m^2)], zero at ghosts, (3, L)"""
+    share: Array
+    """Parts of an element's force that are its left and right node's: 1/2, at rod ends 1; (2, L)"""
+    weight: Array
+    """Weights of the left and right node's velocity in an element's, by mass, (2, L)"""
+    viscosity: Array
+    """The documented damping nu per velocity and length [kg/(m s)], and per angular velocity and
+    length [kg m/s], (2, L)"""
+    damping_rate: Array
+    """Uniform damping c of velocity and angular velocity [1/s], (L,)"""
+    gravity: Array
+    """Acceleration of gravity [m/s^2], (3,)"""
+    is_loaded: bool
+    """Whether the external loads of Control act"""
+    is_viscous: bool
+    """Whether any viscosity is not zero"""
+    activation_time: float
+    """Time constant of muscle activation, 0 for immediate [s]"""
+    planes: Planes
+    waves: Waves
+
+
+class State(NamedTuple):
+    """What a step changes. The first nine fields are the state proper, the rest is derived from it."""
+
+    x: Array
+    """Node position [m], lab frame, (B, 3, L)"""
+    v: Array
+    """Node velocity [m/s], lab frame, (B, 3, L)"""
+    Q: Array
+    """Element directors: rows d1, d2, d3 in the lab, (B, 3, 3, L)"""
+    w: Array
+    """Element angular velocity [rad/s], material frame, (B, 3, L)"""
+    couple: Array
+    """Muscle couple at Voronoi points [N m], material frame, (B, 3, L)"""
+    time: Array
+    """Simulated time [s], (B,)"""
+    step: Index
+    """Steps done, (B,) int64"""
+    length: Array
+    """Element length l [m], (B, L)"""
+    radius: Array
+    """Element radius r at constant volume [m], (B, L)"""
+    kappa: Array
+    """Curvature and twist [1/m], material frame, (B, 3, L)"""
+    sigma: Array
+    """Shear and stretch strain, material frame, (B, 3, L)"""
+    stress: Array
+    """Internal force n = Q^T S (sigma - sigma^) / e [N], lab frame, (B, 3, L)"""
+    moment: Array
+    """tau_L / E^3 [N m], material frame, (B, 3, L)"""
+    transport: Array
+    """kappa x tau_L D^ / E^3 [N m], material frame, (B, 3, L)"""
+    force: Array
+    """Net force on nodes F + F_ext [N], lab frame, (B, 3, L)"""
+    torque: Array
+    """Net torque on elements T + T_ext [N m], material frame, (B, 3, L)"""
+    normal_force: Array
+    """Weight that the planes carry, by element, sum over planes [N], (B, L)"""
+    contact: Array
+    """Scratch of the plane: force on the element, axial direction in lab and material frame,
+    friction capacities, (B, 11, L)"""
+    decay: Array
+    """exp(-c dt) by node and element, (B, L)"""
+
+
+class Control(NamedTuple):
+    """What is set from outside between calls of ``advance``."""
+
+    couple: Array
+    """Muscle couple that ``State.couple`` approaches [N m], material frame, (B, 3, L)"""
+    rest_kappa: Array
+    """Curvature and twist at rest [1/m], (B, 3, L)"""
+    rest_sigma: Array
+    """Shear and stretch strain at rest, (B, 3, L)"""
+    force: Array
+    """External force on nodes, if the model is loaded [N], lab frame, (B, 3, L)"""
+    torque: Array
+    """External torque on elements, if the model is loaded [N m], material frame, (B, 3, L)"""
+
+
+def aligned_zeros(shape: tuple[int, ...], dtype: type = np.float64) -> NDArray:
+    """Return zeros of 8-byte numbers whose first one starts a cache line (64 bytes)."""
+    size = 8 * int(np.prod(shape, dtype=np.int64))
+    raw = np.zeros(size + 64, dtype=np.uint8)
+    start = -raw.ctypes.data % 64
+    return raw[start : start + size].view(dtype).reshape(shape)
+
+
+def make_state(model: Model, n_envs: int = 1) -> State:
+    """Allocate a State of zeros, with unit directors, for ``n_envs`` environments.
+
+    Parameters
+    ----------
+    model : Model
+    n_envs : int
+        Number of environments B.
+    """
+    slots = model.mass.size
+    vector, scalar = (n_envs, 3, slots), (n_envs, slots)
+    shapes = {"Q": (n_envs, 3, 3, slots), "time": (n_envs,), "contact": (n_envs, 11, slots),
+              "length": scalar, "radius": scalar, "normal_force": scalar, "decay": scalar}
+    state = State(*(aligned_zeros((n_envs,), np.int64) if name == "step" else aligned_zeros(shapes.get(name, vector))
+                    for name in State._fields))
+    for i in range(3):
+        state.Q[:, i, i] = 1.0
+    _assert_disjoint(state)
+    return state
+
+
+def make_control(model: Model, n_envs: int = 1) -> Control:
+    """Allocate a Control of zeros for ``n_envs`` environments."""
+    control = Control(*(aligned_zeros((n_envs, 3, model.mass.size)) for _ in Control._fields))
+    _assert_disjoint(control)
+    return control
+
+
+def _assert_disjoint(arrays: State | Control) -> None:
+    """Assert what the stages promise the compiler: no two arrays overlap."""
+    spans = sorted((a.ctypes.data, a.ctypes.data + a.nbytes) for a in arrays)
+    assert all(end <= start for (_, end), (start, _) in zip(spans, spans[1:], strict=False))
