@@ -1,0 +1,14 @@
+"""Looking at animals: recordings for rerun, and pictures and videos drawn offscreen.
+
+Nothing here is imported by ``import elastica_gym``, and rerun and MuJoCo only when they are needed:
+``pip install 'elastica-gym[viz]'``.
+"""
+
+#from .frames import Figure, Stage, render_frames, write_video
+from .recording import read_positions, record_rollout, write_recording
+from .rollout import Policy, Recorder, Rollout, run_rollout
+
+__all__ = [
+    "Figure", "Policy", "Recorder", "Rollout", "Stage", "read_positions", "record_rollout", "render_frames",
+    "run_rollout", "write_recording", "write_video",
+]  # fmt: skip

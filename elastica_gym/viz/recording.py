@@ -1,0 +1,314 @@
+"""Recordings of rollouts for the rerun viewer.
+
+A recording holds, on the timelines ``step`` and ``sim_time``:
+
+| entity | content |
+|---|---|
+| ``/ground`` | the ground and, under the animal, nothing else |
+| ``/animal/body`` | a solid capsule for each element, coloured by the force that the ground carries |
+| ``/animal/nodes`` | the nodes, inside the capsules |
+| ``/animal/head``, ``/animal/trail`` | the head and where it has been |
+| ``/animal/normal_force`` | the force that the ground carries, by element [N] |
+| ``/target`` | a sphere that the head has to enter, if the task has a target |
+| ``/reward/<term>``, ``/return`` | weighted reward of each term, and the sum of all so far |
+| ``/activations/<direction>/<arm>`` | activations of an arm's muscles |
+
+It is written a column at a time, and opens with the layout that `_blueprint` describes.
+"""
+
+import importlib
+import os
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..cosserat.model import Array
+from .rollout import Policy, Rollout, run_rollout
+
+if TYPE_CHECKING:
+    import rerun as rr
+
+APPLICATION_ID = "elastica_gym"
+
+GROUND = (226, 229, 225)
+GRID = (120, 130, 125, 90)
+BACKGROUND = (247, 248, 246)
+TARGET = (214, 69, 65, 150)
+HEAD = (235, 127, 38)
+UNLOADED = np.array((178, 208, 196))
+LOADED = np.array((10, 88, 84))
+LEVELS = ((235, 127, 38), (74, 163, 223), (126, 196, 150))
+"""Colours of the three levels of activations"""
+
+
+def record_rollout(env: Any, policy: Policy, path: str | Path, *, seed: int = 0, **kwargs: Any) -> Path:
+    """Run one episode and write it as a recording that rerun opens.
+
+    Parameters
+    ----------
+    env : str or BatchEnv
+        Id of a registered environment or a batch, as in `run_rollout`.
+    policy : callable
+        ``policy(observations (B, d), env) -> actions (B, 42)``.
+    path : str or Path
+        Where to write it; by custom it ends in ``.rrd``.
+    seed : int
+        Seed of the episode.
+    **kwargs
+        Passed on to `run_rollout`: ``index`` and the environment's arguments.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    _rerun()
+    return write_recording(run_rollout(env, policy, seed=seed, **kwargs), path)
+
+
+def write_recording(rollout: Rollout, path: str | Path) -> Path:
+    """Write a rollout as a recording, whole or not at all.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written: the folder is not writable or the disk full.
+    """
+    rr = _rerun()
+    stream = rr.RecordingStream(APPLICATION_ID)
+    # rerun's own file sink reports a full disk in the log only, so the bytes go through memory
+    memory = stream.binary_stream()
+    stream.send_blueprint(_blueprint(rollout))
+    stream.send_recording_name(rollout.name)
+    _log_scene(stream, rollout)
+    _log_animal(stream, rollout)
+    _log_series(stream, rollout)
+    data = memory.read()
+    if not data:
+        raise RuntimeError("rerun recorded nothing; is the environment variable RERUN set to off?")
+    return _write_whole(Path(path), data)
+
+
+def read_positions(path: str | Path) -> tuple[Array, Array]:
+    """Return the simulated times [s], (T,), and the nodes [m], (T, N, 3), of a recording.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is not a whole recording of an animal.
+    """
+    rr, path = _rerun(), Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"no recording at {path}")
+    try:
+        stream = rr.chunk.RrdReader(path).stream()
+        parts = stream.filter(content="/animal/nodes", components="Points3D:positions").to_chunks()
+    except Exception as error:
+        raise ValueError(f"{path} is not a whole rerun recording: {error}") from error
+    times, nodes = [], []
+    for batch in (part.to_record_batch() for part in parts):
+        column = batch.column("Points3D:positions")
+        times.append(batch.column("sim_time").cast("int64").to_numpy() / 1e9)
+        nodes.append(column.flatten().flatten().to_numpy().reshape(batch.num_rows, -1, 3))
+    if not nodes:
+        raise ValueError(f"{path} is not a recording of an animal: it has no /animal/nodes")
+    order = np.argsort(np.concatenate(times), kind="stable")
+    return np.concatenate(times)[order], np.concatenate(nodes)[order]
+
+
+def _rerun() -> ModuleType:
+    try:
+        import rerun
+    except ImportError as error:
+        raise ImportError("recordings need rerun: pip install 'elastica-gym[viz]'") from error
+    return rerun
+
+
+def _write_whole(path: Path, data: bytes) -> Path:
+    """Write the file under another name first, so that an error leaves nothing half done."""
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with part.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        part.replace(path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise OSError(error.errno, f"cannot write the recording of {len(data)} bytes: {error.strerror}", str(path)) \
+            from error  # fmt: skip
+    return path
+
+
+def _columns(stream: "rr.RecordingStream", rollout: Rollout, entity: str, columns: Any) -> None:
+    """Send the columns of an entity over both timelines."""
+    rr = _rerun()
+    indexes = [rr.TimeColumn("step", sequence=rollout.step), rr.TimeColumn("sim_time", duration=rollout.sim_time)]
+    stream.send_columns(entity, indexes=indexes, columns=columns, strict=True)
+
+
+def _view_box(rollout: Rollout) -> tuple[Array, float]:
+    """Return centre and width of what there is to see on the ground, (3,) and a length [m]."""
+    seen = [rollout.nodes.reshape(-1, 3)] + ([] if rollout.target is None else [rollout.target])
+    low = np.min([points.min(axis=0) for points in seen], axis=0)
+    high = np.max([points.max(axis=0) for points in seen], axis=0)
+    return 0.5 * (low + high), float(max(*(high - low), rollout.body_length))
+
+
+def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
+    """Log what does not move: axes, ground and target."""
+    rr = _rerun()
+    centre, width = _view_box(rollout)
+    half, depth = 4.0 * width, 0.02 * rollout.body_length
+    stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
+    stream.log(
+        "ground",
+        rr.Boxes3D(
+            centers=[[centre[0], -depth, centre[2]]], half_sizes=[[half, 0.9 * depth, half]], colors=[GROUND],
+            fill_mode="solid",
+        ),
+        static=True,
+    )  # fmt: skip
+    if rollout.target is not None:
+        _columns(stream, rollout, "target", rr.Ellipsoids3D.columns(
+            centers=rollout.target, half_sizes=np.full_like(rollout.target, rollout.target_radius),
+        ))  # fmt: skip
+        stream.log("target", rr.Ellipsoids3D.from_fields(colors=[TARGET], fill_mode="solid"), static=True)
+
+
+def _log_animal(stream: "rr.RecordingStream", rollout: Rollout) -> None:
+    """Log the body, its head and the head's trail."""
+    rr = _rerun()
+    begin, end = rollout.segments()
+    n_steps, n_elements = rollout.radii.shape
+    every = [n_elements] * n_steps
+    body = rr.Capsules3D.columns(
+        translations=begin.reshape(-1, 3),
+        quaternions=rotations_from_z(end - begin).reshape(-1, 4),
+        lengths=np.linalg.norm(end - begin, axis=-1).ravel(),
+        radii=rollout.radii.ravel(),
+        colors=contact_colors(rollout.normal_force).reshape(-1, 3),
+    )
+    _columns(stream, rollout, "animal/body", body.partition(every))
+    stream.log("animal/body", rr.Capsules3D.from_fields(fill_mode="solid"), static=True)
+
+    thick = float(rollout.radii.max())
+    nodes = rr.Points3D.columns(positions=rollout.nodes.reshape(-1, 3)).partition([rollout.nodes.shape[1]] * n_steps)
+    _columns(stream, rollout, "animal/nodes", nodes)
+    stream.log("animal/nodes", rr.Points3D.from_fields(radii=0.2 * thick, colors=[HEAD]), static=True)
+    _columns(stream, rollout, "animal/head", rr.Points3D.columns(positions=rollout.head))
+    stream.log("animal/head", rr.Points3D.from_fields(radii=1.25 * thick, colors=[HEAD]), static=True)
+
+    # a piece of the trail for each step; the blueprint shows all pieces up to now
+    path = rollout.head + [0.0, 1.5 * thick, 0.0]
+    pieces = np.stack([np.concatenate([path[:1], path[:-1]]), path], axis=1)
+    _columns(stream, rollout, "animal/trail", rr.LineStrips3D.columns(strips=pieces))
+    stream.log("animal/trail", rr.LineStrips3D.from_fields(radii=0.25 * thick, colors=[HEAD]), static=True)
+
+
+def _log_series(stream: "rr.RecordingStream", rollout: Rollout) -> None:
+    """Log what is plotted over time."""
+    rr = _rerun()
+
+    def log(entity: str, values: Array, names: list[str], **style: Any) -> None:
+        columns = rr.Scalars.columns(scalars=values.ravel())
+        _columns(stream, rollout, entity, columns.partition([values.shape[1]] * len(values)))
+        stream.log(entity, rr.SeriesLines(names=names, **style), static=True)
+
+    for term, values in rollout.rewards.items():
+        log(f"reward/{term}", values[:, None], [term])
+    log("return", rollout.episode_return[:, None], ["return"])
+    log("animal/normal_force", rollout.normal_force, [f"element {k}" for k in range(rollout.normal_force.shape[1])])
+    for group in activation_groups(rollout):
+        members = [k for k, name in enumerate(rollout.activation_names) if name.startswith(f"{group}/")]
+        names = [rollout.activation_names[k].rpartition("/")[2] for k in members]
+        levels = [int(name.partition(".")[0]) for name in names]
+        style = {"colors": [LEVELS[level] for level in levels], "widths": [2.5 - 0.7 * level for level in levels]}
+        log(f"activations/{group}", rollout.activations[:, members], names, **style)
+
+
+def activation_groups(rollout: Rollout) -> list[str]:
+    """Return the names of the groups of activations, ``direction/arm``, in order."""
+    return list(dict.fromkeys(name.rpartition("/")[0] for name in rollout.activation_names))
+
+
+def contact_colors(normal_force: Array) -> Array:
+    """Return a colour for each element, pale where it hovers and dark under twice its mean load.
+
+    Parameters
+    ----------
+    normal_force : Array
+        Force with which the ground carries each element [N], (T, M).
+
+    Returns
+    -------
+    Array
+        (T, M, 3) uint8.
+    """
+    mean = float(normal_force.mean())
+    load = np.clip(normal_force / (2.0 * mean), 0.0, 1.0) if mean > 0.0 else np.zeros_like(normal_force)
+    return np.round(UNLOADED + load[..., None] * (LOADED - UNLOADED)).astype(np.uint8)
+
+
+def rotations_from_z(vectors: Array) -> Array:
+    """Return the quaternions (x, y, z, w) of the shortest rotations from +z to vectors (..., 3), (..., 4)."""
+    t = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    q = np.stack([-t[..., 1], t[..., 0], np.zeros_like(t[..., 0]), 1.0 + t[..., 2]], axis=-1)
+    size = np.linalg.norm(q, axis=-1, keepdims=True)
+    return np.where(size > 1e-9, q / np.maximum(size, 1e-9), [1.0, 0.0, 0.0, 0.0])
+
+
+def _blueprint(rollout: Rollout) -> Any:
+    """Describe the layout: the scene, and beside it rewards, return and activations, playing in real time."""
+    rr, rrb = _rerun(), importlib.import_module("rerun.blueprint")
+
+    from_start = rrb.VisibleTimeRange(
+        "sim_time", start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
+    )
+    from_first = rrb.VisibleTimeRange(
+        "step", start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
+    )
+    centre, width = _view_box(rollout)
+    scene = rrb.Spatial3DView(
+        name=rollout.name,
+        contents=["/ground", "/target", "/animal/body", "/animal/nodes", "/animal/head", "/animal/trail"],
+        overrides={"/animal/trail": [rrb.VisibleTimeRanges([from_start, from_first])]},
+        background=BACKGROUND,
+        line_grid=rrb.LineGrid3D(
+            visible=True, spacing=0.5 * rollout.body_length, plane=rr.components.Plane3D((0.0, 1.0, 0.0)), stroke_width=1.0, color=GRID
+        ),
+        eye_controls=rrb.EyeControls3D(
+            kind="Orbital", look_target=centre, position=centre + width * np.array([0.0, 0.8, 0.7]),
+            eye_up=(0.0, 1.0, 0.0),
+        ),
+    )  # fmt: skip
+    rewards = rrb.Horizontal(
+        rrb.TimeSeriesView(name="Reward by term", origin="/reward"),
+        rrb.TimeSeriesView(name="Return", origin="/return", plot_legend=rrb.PlotLegend(visible=False)),
+    )
+    activations = rrb.Grid(
+        *(
+            rrb.TimeSeriesView(
+                name=f"Activations: {group.replace('/', ', ')}", origin=f"/activations/{group}",
+                axis_y=rrb.ScalarAxis(range=(-1.05, 1.05)),
+                plot_legend=rrb.PlotLegend(visible=False),
+            )
+            for group in activation_groups(rollout)
+        ),
+        grid_columns=2,
+    )  # fmt: skip
+    return rrb.Blueprint(
+        rrb.Horizontal(scene, rrb.Vertical(rewards, activations, row_shares=[1, 3]), column_shares=[3, 2]),
+        rrb.TimePanel(timeline="sim_time", play_state="playing", loop_mode="all", state="collapsed"),
+        collapse_panels=True,
+    )

@@ -1,0 +1,212 @@
+"""Rollouts: what one environment did, step by step, as arrays."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Self
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+
+from ..cosserat.model import Array
+from ..muscles import activation_names
+
+if TYPE_CHECKING:
+    from ..envs import BatchEnv
+
+Policy = Callable[[Array, Any], Array]
+"""Observations (B, d) and the BatchEnv in, actions (B, 42) out"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rollout:
+    """T moments of an animal: the start of an episode and the end of each control step.
+
+    Attributes
+    ----------
+    name : str
+        What it is a rollout of, such as the id of the environment.
+    body_length : float
+        Length of the animal at rest, the unit of the scene [m].
+    elements_per_rod : tuple of int
+        Rods follow one another in `nodes`, `radii` and `normal_force`: n elements, n + 1 nodes.
+    step : Array
+        Control steps done, (T,) int64.
+    sim_time : Array
+        Simulated time [s], (T,).
+    nodes : Array
+        Positions of nodes [m], lab frame with y up, (T, N, 3).
+    radii : Array
+        Radii of elements [m], (T, M).
+    normal_force : Array
+        Force with which the ground carries each element [N], (T, M).
+    head : Array
+        Position of the head [m], (T, 3).
+    target : Array or None
+        Position of the target [m], (T, 3), where the task has one.
+    target_radius : float
+        How near the target the head has to come [m].
+    rewards : dict of str to Array
+        Weighted reward of each term, zero at the start, (T,) each.
+    activations : Array
+        Activations applied during the step, (T, 42).
+    activation_names : tuple of str
+        Name of each activation, as ``direction/arm/place``.
+    """
+
+    name: str
+    body_length: float
+    elements_per_rod: tuple[int, ...]
+    step: Array
+    sim_time: Array
+    nodes: Array
+    radii: Array
+    normal_force: Array
+    head: Array
+    target: Array | None
+    target_radius: float
+    rewards: dict[str, Array]
+    activations: Array
+    activation_names: tuple[str, ...]
+
+    @property
+    def episode_return(self) -> Array:
+        """Sum of all rewards so far, (T,)."""
+        return np.cumsum(np.sum(list(self.rewards.values()), axis=0) + np.zeros(self.step.size))
+
+    @property
+    def duration(self) -> float:
+        """Simulated time from the first to the last moment [s]."""
+        return float(self.sim_time[-1] - self.sim_time[0])
+
+    def segments(self) -> tuple[Array, Array]:
+        """Return where each element begins and ends [m], two of (T, M, 3)."""
+        bounds = np.cumsum([0, *(n + 1 for n in self.elements_per_rod)])
+        first = np.concatenate([np.arange(b, e - 1) for b, e in zip(bounds, bounds[1:], strict=False)])
+        return self.nodes[:, first], self.nodes[:, first + 1]
+
+
+class Recorder:
+    """Collects the rollout of one environment of a batch, a moment at a time.
+
+    Call `capture` after ``reset`` and after every ``step``, up to the end of the episode. A moment
+    whose numbers are not finite, as a simulation that diverged may leave behind, repeats the
+    positions of the moment before.
+
+    Parameters
+    ----------
+    env : BatchEnv
+        The environment, which may also be wrapped.
+    index : int
+        Which environment of the batch to follow.
+    """
+
+    def __init__(self, env: Any, index: int = 0) -> None:
+        self.env: BatchEnv = _batch(env)
+        if not 0 <= index < self.env.num_envs:
+            raise ValueError(f"index must be from 0 to {self.env.num_envs - 1}, not {index}")
+        model = self.env.body.model
+        spans = list(zip(model.first_slot.tolist(), model.n_elements.tolist(), strict=True))
+        self._index = index
+        self._nodes = np.concatenate([np.arange(s, s + n + 1) for s, n in spans])
+        self._elements = np.concatenate([np.arange(s, s + n) for s, n in spans])
+        self._moments: list[dict[str, Array]] = []
+        self._rewards: list[dict[str, float]] = []
+
+    def capture(self, infos: dict[str, Any] | None = None) -> Self:
+        """Append the environment's present moment.
+
+        Parameters
+        ----------
+        infos : dict, optional
+            What ``step`` returned; its ``reward_<term>`` arrays are the rewards. Omit it after ``reset``.
+        """
+        env, i, state = self.env, self._index, self.env.state
+        target = env.target
+        moment = {
+            "nodes": state.x[i].T[self._nodes],
+            "radii": state.radius[i, self._elements],
+            "normal_force": state.normal_force[i, self._elements],
+            "head": state.x[i, :, env.body.senses.head].copy(),
+            "target": np.full(3, np.nan) if target is None else np.array(target[i]),
+        }
+        if self._moments and not all(np.isfinite(moment[k]).all() for k in ("nodes", "radii", "normal_force")):
+            moment = dict(self._moments[-1])
+        moment["activations"] = np.array(env.activations[i], dtype=float)
+        self._moments.append(moment)
+        terms = {} if infos is None else {k[7:]: v[i] for k, v in infos.items() if k.startswith("reward_")}
+        self._rewards.append({name: float(value) for name, value in terms.items()})
+        return self
+
+    def rollout(self) -> Rollout:
+        """Return what has been captured.
+
+        Raises
+        ------
+        RuntimeError
+            If nothing was.
+        """
+        if not self._moments:
+            raise RuntimeError("nothing was captured: call capture() after reset() and after every step()")
+        env = self.env
+        series = {name: np.stack([m[name] for m in self._moments]) for name in self._moments[0]}
+        step = np.arange(len(self._moments))
+        terms = dict.fromkeys([*env.task.reward_weights, *(t for r in self._rewards for t in r)])
+        target = series.pop("target")
+        return Rollout(
+            name=env.spec.id if env.spec else env.task.name,
+            body_length=env.body.senses.length,
+            elements_per_rod=tuple(env.body.model.n_elements.tolist()),
+            step=step,
+            sim_time=step * env.control_dt,
+            target=None if np.isnan(target).any() else target,
+            target_radius=0.05 * env.body.senses.length,
+            rewards={term: np.array([r.get(term, 0.0) for r in self._rewards]) for term in terms},
+            activation_names=activation_names(env.body.arms),
+            **series,
+        )
+
+
+def run_rollout(env: Any, policy: Policy, *, seed: int = 0, index: int = 0, **env_kwargs: Any) -> Rollout:
+    """Run one episode and return it.
+
+    Parameters
+    ----------
+    env : str or BatchEnv
+        Id of a registered environment, of which a batch of one is made, or a batch to use. A batch
+        must not reset at the step that ends an episode (``AutoresetMode.SAME_STEP``), since its last
+        moment would be lost.
+    policy : callable
+        ``policy(observations (B, d), env) -> actions (B, 42)``.
+    seed : int
+        Seed of the episode.
+    index : int
+        Which environment of the batch to follow.
+    **env_kwargs
+        Passed on to ``gymnasium.make_vec`` with an id.
+    """
+    if isinstance(env, str):
+        env_kwargs = {"autoreset_mode": AutoresetMode.DISABLED, "num_envs": 1, **env_kwargs}
+        vector = gymnasium.make_vec(env, vectorization_mode="vector_entry_point", **env_kwargs)
+        try:
+            return run_rollout(vector, policy, seed=seed, index=index)
+        finally:
+            vector.close()
+    batch = _batch(env)
+    if batch.metadata["autoreset_mode"] == AutoresetMode.SAME_STEP:
+        raise ValueError("env must have the autoreset_mode DISABLED or NEXT_STEP, not SAME_STEP")
+    recorder = Recorder(batch, index)
+    observations, _ = env.reset(seed=seed)
+    recorder.capture()
+    done = False
+    while not done:
+        observations, _, terminated, truncated, infos = env.step(policy(observations, batch))
+        recorder.capture(infos)
+        done = bool(terminated[index] or truncated[index])
+    return recorder.rollout()
+
+
+def _batch(env: Any) -> "BatchEnv":
+    """Return the batch inside wrappers or inside the view of a batch of one."""
+    inner = getattr(env, "unwrapped", env)
+    return getattr(inner, "batch", inner)
