@@ -1,0 +1,110 @@
+"""Checkpoints that survive being killed: whole or not at all, and checked before use.
+
+A checkpoint is a folder ``<steps>`` with files and ``checksums.json``. It is written under another name, forced to
+disk and renamed, so that a process that dies in between leaves the previous one as it was.
+"""
+
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+CHECKSUMS = "checksums.json"
+KEPT = 2
+"""How many checkpoints are kept: one more than needed, for the day that the disk damages the last."""
+
+
+def write_checkpoint(checkpoints: Path, steps: int, write_files: Callable[[Path], None]) -> Path:
+    """Write a checkpoint and delete all but the last ones.
+
+    Parameters
+    ----------
+    checkpoints
+        Folder of the checkpoints; it is created.
+    steps
+        Environment steps done, which name the checkpoint.
+    write_files
+        Is called with a folder and writes the checkpoint's files there.
+
+    Raises
+    ------
+    OSError
+        If the disk does not take it; earlier checkpoints are then as they were.
+    """
+    checkpoints.mkdir(parents=True, exist_ok=True)
+    final, temporary = checkpoints / f"{steps:012d}", checkpoints / f".writing-{os.getpid()}"
+    for abandoned in checkpoints.glob(".writing-*"):
+        shutil.rmtree(abandoned)
+    try:
+        temporary.mkdir()
+        write_files(temporary)
+        sums = {path.name: _checksum(path) for path in sorted(temporary.iterdir())}
+        (temporary / CHECKSUMS).write_text(json.dumps(sums, indent=2))
+        for path in [*temporary.iterdir(), temporary]:
+            _force_to_disk(path)
+        if final.exists():
+            shutil.rmtree(final)
+        temporary.rename(final)
+        _force_to_disk(checkpoints)
+    except BaseException:
+        shutil.rmtree(temporary, ignore_errors=True)
+        raise
+    for old in checkpoint_folders(checkpoints)[:-KEPT]:
+        shutil.rmtree(old)
+    return final
+
+
+def checkpoint_folders(checkpoints: Path) -> list[Path]:
+    """Return the checkpoints, whole or not, oldest first."""
+    return sorted(path for path in checkpoints.glob("[0-9]*") if path.is_dir())
+
+
+def last_whole_checkpoint(checkpoints: Path, *, tell: Callable[[str], None] = print) -> Path | None:
+    """Return the newest checkpoint whose files have their checksums, telling which newer ones are damaged."""
+    for folder in reversed(checkpoint_folders(checkpoints)):
+        damage = find_damage(folder)
+        if damage is None:
+            return folder
+        tell(f"The checkpoint {folder} is damaged ({damage}); trying the one before.")
+    return None
+
+
+def find_damage(folder: Path) -> str | None:
+    """Return what is wrong with a checkpoint, or None."""
+    try:
+        sums = json.loads((folder / CHECKSUMS).read_text())
+        for name, checksum in sums.items():
+            if _checksum(folder / name) != checksum:
+                return f"{name} has another checksum"
+    except OSError as error:
+        return f"{error.strerror}: {error.filename}"
+    except (ValueError, AttributeError):
+        return f"{CHECKSUMS} is not readable"
+    return None
+
+
+def write_atomically(path: Path, write: Callable[[Path], None]) -> None:
+    """Let `write` write a file under another name in the same folder and move it to `path` when it is on disk."""
+    temporary = path.with_name(f".writing-{path.name}")
+    try:
+        write(temporary)
+        _force_to_disk(temporary)
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def _checksum(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _force_to_disk(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,259 @@
+"""Evaluate a policy: ``python -m agents.evaluate --run DIR`` or ``--policy scripted --env ID``."""
+
+import dataclasses
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from agents.checks import (
+    BadInputError,
+    choose,
+    environment_ids,
+    make_folder,
+    missing_extra,
+    require_extra,
+    run_command,
+)
+
+if TYPE_CHECKING:
+    from agents.policies import Policy
+
+LARGEST_BATCH = 1024
+"""Episodes that run side by side; more than these are run in turns."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Evaluation:
+    """What `n` episodes came to; every array has one entry per episode."""
+
+    seeds: np.ndarray
+    """Seed of each episode, shape (n,)."""
+    returns: np.ndarray
+    """Undiscounted sum of rewards, shape (n,)."""
+    lengths: np.ndarray
+    """Control steps, shape (n,)."""
+    distances: np.ndarray
+    """The task's progress at the end [m], shape (n,)."""
+    successes: np.ndarray
+    """Whether the task was solved, shape (n,), bool."""
+    reasons: np.ndarray
+    """Why each episode ended: success, diverged or time_limit, shape (n,)."""
+    terms: dict[str, np.ndarray]
+    """Sum over the episode of each weighted reward term, shape (n,) each."""
+
+    @property
+    def divergences(self) -> int:
+        """Episodes whose numbers stopped being finite."""
+        return int(np.sum(self.reasons == "diverged"))
+
+    def summary(self) -> dict[str, Any]:
+        """Means, and half widths of 95 % confidence intervals, of everything; ready for JSON."""
+        return {
+            "episodes": len(self.returns),
+            "first_seed": int(self.seeds[0]),
+            "return_mean": float(self.returns.mean()),
+            "return_ci95": confidence(self.returns),
+            "success_rate": float(self.successes.mean()),
+            "distance_mean": float(self.distances.mean()),
+            "distance_ci95": confidence(self.distances),
+            "length_mean": float(self.lengths.mean()),
+            "divergences": self.divergences,
+            "terms": {name: float(values.mean()) for name, values in self.terms.items()},
+            "terms_ci95": {name: confidence(values) for name, values in self.terms.items()},
+        }
+
+
+def confidence(values: np.ndarray) -> float:
+    """Half width of the 95 % confidence interval of the mean of `values`, by Student's t; NaN for one value."""
+    from scipy import stats
+
+    n = len(values)
+    if n < 2:
+        return math.nan
+    return float(stats.t.ppf(0.975, n - 1) * values.std(ddof=1) / math.sqrt(n))
+
+
+def evaluate(
+    policy: "Policy", env_id: str, *, episodes: int, seed: int, n_threads: int = 2, env_kwargs: dict | None = None
+) -> Evaluation:
+    """Run `policy` for `episodes` episodes of `env_id`, side by side; episode i has the seed ``seed + i``.
+
+    What an episode comes to depends on its seed alone, and not on how many run beside it.
+    """
+    if episodes < 1:
+        raise BadInputError(f"episodes must be at least 1, got {episodes}")
+    parts = []
+    for first in range(0, episodes, LARGEST_BATCH):
+        seeds = [seed + i for i in range(first, min(first + LARGEST_BATCH, episodes))]
+        parts.append(_evaluate_batch(policy, env_id, seeds, n_threads, env_kwargs or {}))
+    if len(parts) == 1:
+        return parts[0]
+    fields = {f.name: [getattr(part, f.name) for part in parts] for f in dataclasses.fields(Evaluation)}
+    terms = {name: np.concatenate([t[name] for t in fields["terms"]]) for name in parts[0].terms}
+    return Evaluation(**{name: np.concatenate(v) for name, v in fields.items() if name != "terms"}, terms=terms)
+
+
+def _evaluate_batch(
+    policy: "Policy", env_id: str, seeds: list[int], n_threads: int, env_kwargs: dict[str, Any]
+) -> Evaluation:
+    from agents.vec_env import make_batch_vec_env
+
+    env = make_batch_vec_env(env_id, n_envs=len(seeds), n_threads=n_threads, **env_kwargs)
+    try:
+        env.seed(seeds[0])
+        observations = env.reset()
+        _check_fits(policy, observations.shape[1:], env_id)
+        policy.reset(seeds)
+        infos: dict[int, dict[str, Any]] = {}
+        while len(infos) < len(seeds):
+            observations, _, dones, step_infos = env.step(policy(observations, env.batch))
+            for i in np.flatnonzero(dones):
+                # an environment that is done goes on with episodes that nobody counts until the last one is done
+                infos.setdefault(int(i), step_infos[i])
+        return _collect(seeds, [infos[i] for i in range(len(seeds))])
+    finally:
+        env.close()
+
+
+def _check_fits(policy: "Policy", shape: tuple[int, ...], env_id: str) -> None:
+    model = getattr(policy, "model", None)
+    if model is not None and model.observation_space.shape != shape:
+        raise BadInputError(f"The model observes {model.observation_space.shape}, but {env_id} gives {shape}.")
+
+
+def _collect(seeds: list[int], infos: list[dict[str, Any]]) -> Evaluation:
+    episodes = [info["episode"] for info in infos]
+    terms = [key for key in episodes[0] if key.startswith("reward_")]
+    return Evaluation(
+        seeds=np.array(seeds),
+        returns=np.array([episode["r"] for episode in episodes]),
+        lengths=np.array([episode["l"] for episode in episodes]),
+        distances=np.array([episode["distance"] for episode in episodes]),
+        successes=np.array([info["is_success"] for info in infos]),
+        reasons=np.array([info["termination_reason"] for info in infos]),
+        terms={key.removeprefix("reward_"): np.array([episode[key] for episode in episodes]) for key in terms},
+    )
+
+
+def print_table(title: str, result: Evaluation) -> None:
+    """Print what the episodes came to, a line per quantity."""
+    from rich.console import Console
+    from rich.table import Table
+
+    summary = result.summary()
+    table = Table(title=title)
+    table.add_column("over the episode")
+    table.add_column("mean", justify="right")
+    table.add_column("95 % interval", justify="right")
+    for name, mean, half in _rows(summary):
+        interval = f"{mean - half:.3f} to {mean + half:.3f}" if math.isfinite(half) else ""
+        table.add_row(name, f"{mean:.3f}", interval)
+    low, high = success_interval(result.successes)
+    table.add_row("success rate", f"{summary['success_rate']:.1%}", f"{low:.1%} to {high:.1%}")
+    table.add_row("length (control steps)", f"{summary['length_mean']:.1f}", "")
+    table.add_row("diverged", f"{result.divergences} of {summary['episodes']}", "")
+    Console().print(table)
+
+
+def _rows(summary: dict[str, Any]) -> Iterator[tuple[str, float, float]]:
+    yield "return", summary["return_mean"], summary["return_ci95"]
+    yield "distance [m]", summary["distance_mean"], summary["distance_ci95"]
+    for name, mean in summary["terms"].items():
+        yield f"reward: {name}", mean, summary["terms_ci95"][name]
+
+
+def success_interval(successes: np.ndarray) -> tuple[float, float]:
+    """95 % interval of a success rate (Wilson 1927), which stays sensible at none and all."""
+    n, rate, z = len(successes), float(np.mean(successes)), 1.96
+    centre = (rate + z * z / (2 * n)) / (1 + z * z / n)
+    half = z / (1 + z * z / n) * math.sqrt(rate * (1 - rate) / n + z * z / (4 * n * n))
+    return centre - half, centre + half
+
+
+@dataclasses.dataclass
+class EvaluateArguments:
+    """Evaluate a trained run or a baseline on episodes with the seeds seed, seed + 1, ..."""
+
+    run: Path | None = None
+    """Folder of a run of agents.train."""
+    policy: str | None = None
+    """Instead of a run: zero, random or scripted."""
+    env: str | None = None
+    """Environment id; by default the one that the run was trained on."""
+    episodes: int = 50
+    """How many episodes."""
+    seed: int = 1
+    """Seed of the first episode."""
+    record: Path | None = None
+    """Folder for a rerun recording of the first episode."""
+    json: Path | None = None
+    """File for the numbers as JSON."""
+    n_threads: int = 2
+    """Threads that step the physics."""
+
+
+def main() -> None:
+    """Run the command line."""
+    require_extra("train")
+    import tyro
+
+    arguments = tyro.cli(EvaluateArguments)
+    policy, env_id, env_kwargs = _policy_and_environment(arguments)
+    if arguments.record is not None:
+        make_folder(arguments.record)
+    result = evaluate(
+        policy,
+        env_id,
+        episodes=arguments.episodes,
+        seed=arguments.seed,
+        n_threads=arguments.n_threads,
+        env_kwargs=env_kwargs,
+    )
+    name = arguments.policy or str(arguments.run)
+    print_table(f"{name} on {env_id}, {arguments.episodes} episodes from seed {arguments.seed}", result)
+    if arguments.json is not None:
+        make_folder(arguments.json.parent)
+        summary = {"policy": name, "env": env_id, **result.summary()}
+        arguments.json.write_text(json.dumps(summary, indent=2) + "\n")
+    if arguments.record is not None:
+        record(policy, env_id, seed=arguments.seed, folder=arguments.record, env_kwargs=env_kwargs)
+
+
+def _policy_and_environment(arguments: EvaluateArguments) -> "tuple[Policy, str, dict[str, Any]]":
+    if (arguments.run is None) == (arguments.policy is None):
+        raise BadInputError("Give either --run DIR or --policy zero|random|scripted.")
+    if arguments.env is not None:
+        choose("environment", arguments.env, environment_ids())
+    # torch takes seconds to import: not before the arguments are known to be good
+    from agents.policies import baseline, load_run
+
+    if arguments.policy is not None:
+        if arguments.env is None:
+            raise BadInputError(f"--policy needs --env, one of {', '.join(environment_ids())}.")
+        return baseline(arguments.policy), arguments.env, {}
+    assert arguments.run is not None
+    policy, config = load_run(arguments.run)
+    env_kwargs = config["hyperparameters"].get("env_kwargs") or {}
+    return policy, arguments.env or choose("environment", config["env"], environment_ids()), env_kwargs
+
+
+def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs: dict[str, Any]) -> Path | None:
+    """Record the episode with `seed` for rerun; without rerun, say how to get it and return None."""
+    if message := missing_extra("viz"):
+        print(f"no recording: {message}")
+        return None
+    from elastica_gym.viz import record_rollout
+
+    path = folder / f"{env_id.rpartition('/')[2]}-seed{seed}.rrd"
+    policy.reset([seed])
+    record_rollout(env_id, policy, path, seed=seed, **env_kwargs)
+    print(f"recorded {path}")
+    return path
+
+
+if __name__ == "__main__":
+    run_command(main)

@@ -1,0 +1,157 @@
+"""Policies behind one interface: zero, random, scripted, and trained runs."""
+
+import pickle
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+import yaml
+
+from agents.checks import BadInputError, choose
+from agents.hyperparameters import algorithm_class
+
+BASELINES = ("zero", "random", "scripted")
+
+ROWS_PER_FORWARD = 64
+"""A network is always evaluated on this many rows at once: matrix products of other sizes round differently, and what
+an episode does must not depend on how many others run beside it."""
+
+
+class Policy(Protocol):
+    """What evaluation asks of a policy."""
+
+    def reset(self, seeds: Sequence[int]) -> None:
+        """Begin one episode in each environment; `seeds` has one seed per environment."""
+
+    def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
+        """Return the actions (n, 42) for `observations` (n, d) of the environment `batch`."""
+
+
+class ZeroPolicy:
+    """Every muscle at rest."""
+
+    def reset(self, seeds: Sequence[int]) -> None:
+        """Nothing to begin."""
+
+    def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
+        """Return zeros."""
+        return np.zeros((batch.num_envs, *batch.single_action_space.shape), np.float32)
+
+
+class RandomPolicy:
+    """Actions drawn uniformly, afresh at every control step, from a generator per episode."""
+
+    def reset(self, seeds: Sequence[int]) -> None:
+        """Seed one generator per environment."""
+        self._generators = [np.random.default_rng(seed) for seed in seeds]
+
+    def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
+        """Return uniform draws from [-1, 1]."""
+        shape = batch.single_action_space.shape
+        return np.stack([rng.uniform(-1.0, 1.0, shape) for rng in self._generators]).astype(np.float32)
+
+
+class ScriptedPolicy:
+    """The task's own scripted policy, which may look at the whole state."""
+
+    def reset(self, seeds: Sequence[int]) -> None:
+        """Nothing to begin: the script reads the time from the state."""
+
+    def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
+        """Return what the script does."""
+        return np.asarray(batch.task.scripted_policy(batch), np.float32)
+
+
+class TrainedPolicy:
+    """A Stable-Baselines3 model with the normalisation it was trained with; its mean action, without exploration.
+
+    Parameters
+    ----------
+    model
+        A PPO or SAC model.
+    normalization
+        The ``VecNormalize`` of its training, or None.
+    """
+
+    def __init__(self, model: Any, normalization: Any | None):
+        self.model = model
+        self.normalization = normalization
+
+    def reset(self, seeds: Sequence[int]) -> None:
+        """Nothing to begin: the network has no memory."""
+
+    def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
+        """Return the mean actions of the model."""
+        n, d = observations.shape
+        if self.normalization is not None:
+            observations = self.normalization.normalize_obs(observations)
+        padded = np.zeros((-(-n // ROWS_PER_FORWARD) * ROWS_PER_FORWARD, d), np.float32)
+        padded[:n] = observations
+        blocks = padded.reshape(-1, ROWS_PER_FORWARD, d)
+        return np.concatenate([self.model.predict(block, deterministic=True)[0] for block in blocks])[:n]
+
+
+def baseline(name: str) -> Policy:
+    """Return the policy called `name`: zero, random or scripted."""
+    made = {"zero": ZeroPolicy, "random": RandomPolicy, "scripted": ScriptedPolicy}
+    return made[choose("policy", name, BASELINES)]()
+
+
+def load_run(run: Path) -> tuple[TrainedPolicy, dict[str, Any]]:
+    """Load a run's final model, or while there is none, that of its last whole checkpoint.
+
+    Parameters
+    ----------
+    run
+        A folder that ``python -m agents.train`` wrote, or one with its ``config.yml``, ``model.zip`` and, if it
+        normalises, ``vecnormalize.pkl``.
+
+    Returns
+    -------
+    policy
+        The model with its normalisation.
+    config
+        What the run was started with: ``env``, ``algo``, ``hyperparameters`` and more.
+    """
+    from agents.checkpoints import last_whole_checkpoint
+
+    config = read_config(run)
+    folder = run if (run / "model.zip").exists() else last_whole_checkpoint(run / "checkpoints")
+    if folder is None:
+        raise BadInputError(f"The run {run} has neither a model.zip nor a whole checkpoint.")
+    model = load_model(folder / "model.zip", config["algo"])
+    normalization = (
+        load_normalization(folder / "vecnormalize.pkl") if config["hyperparameters"].get("normalize") else None
+    )
+    return TrainedPolicy(model, normalization), config
+
+
+def read_config(run: Path) -> dict[str, Any]:
+    """Return what ``config.yml`` of the run says."""
+    try:
+        config = yaml.safe_load((run / "config.yml").read_text())
+    except OSError as error:
+        raise BadInputError(f"{run} is not the folder of a run: {error.strerror}: {error.filename}") from error
+    except yaml.YAMLError as error:
+        raise BadInputError(f"{run / 'config.yml'} is damaged: {error}") from error
+    absent = {"env", "algo", "seed", "hyperparameters"} - set(config if isinstance(config, dict) else ())
+    if absent:
+        raise BadInputError(f"{run / 'config.yml'} is damaged: no {', '.join(sorted(absent))}.")
+    return config
+
+
+def load_model(path: Path, algo: str, **arguments: Any) -> Any:
+    """Load a Stable-Baselines3 model; `arguments` go to its ``load``."""
+    try:
+        return algorithm_class(algo).load(path, device="cpu", **arguments)
+    except Exception as error:  # a damaged archive fails in as many ways as there are bytes in it
+        raise BadInputError(f"The model {path} is missing or damaged: {type(error).__name__}: {error}") from error
+
+
+def load_normalization(path: Path) -> Any:
+    """Load a ``VecNormalize`` without environments."""
+    try:
+        return pickle.loads(path.read_bytes())
+    except Exception as error:  # as above
+        raise BadInputError(f"The statistics {path} are missing or damaged: {type(error).__name__}: {error}") from error

@@ -1,0 +1,152 @@
+"""Train an agent: ``python -m agents.train --env elastica_gym/SnakeForward-v0 --algo ppo``."""
+
+import dataclasses
+import importlib.metadata
+import platform
+import time
+from pathlib import Path
+from typing import Any
+
+from agents.checks import BadInputError, choose, environment_ids, fail, make_folder, require_extra, run_command
+
+VERSIONS = ("elastica-gym", "stable-baselines3", "torch", "numpy", "numba", "gymnasium")
+
+
+@dataclasses.dataclass
+class TrainArguments:
+    """Train an agent with Stable-Baselines3.
+
+    Hyperparameters come from configs/<algo>.yml. What the run leaves behind is in runs/<id>/<algo>-<seed>-<time>/.
+    """
+
+    env: str = "elastica_gym/SnakeForward-v0"
+    """Environment id."""
+    algo: str = "ppo"
+    """Algorithm: ppo or sac."""
+    seed: int = 0
+    """Seed of networks and exploration; environment i has seed + i."""
+    steps: int | None = None
+    """Environment steps to train for; by default n_timesteps of the configuration, or no limit if minutes are given."""
+    minutes: float | None = None
+    """Wall-clock budget of training and its evaluations; schedules follow the part of it that is left."""
+    n_envs: int | None = None
+    """Environments in the batch, instead of the configuration's."""
+    set: list[str] = dataclasses.field(default_factory=list)
+    """Hyperparameters to go before the configuration's, as KEY=VALUE, such as learning_rate=0.0005 gamma=0.99."""
+    config: Path | None = None
+    """Another configuration file of the same format."""
+    threads: int = 2
+    """Threads for the physics, and for the networks between rollouts."""
+    evaluations: int = 10
+    """Evaluation points besides the one at the start, spread evenly over the budget; 0 for none at all."""
+    evaluation_episodes: int = 20
+    """Episodes of each evaluation."""
+    evaluation_seed: int = 1_000_000
+    """Seed of an evaluation's first episode."""
+    recordings: int = 1
+    """Evaluation episodes recorded for rerun at the end."""
+    checkpoint_minutes: float = 1.0
+    """Time between checkpoints; 0 writes one after every update."""
+    out: Path = Path("runs")
+    """Folder of all runs."""
+    folder: Path | None = None
+    """Folder of this run, instead of one in `out` named by id, algorithm, seed and time."""
+    resume: Path | None = None
+    """Folder of a run to continue from its last whole checkpoint; of the other options only steps and minutes count."""
+
+
+def main() -> None:
+    """Run the command line."""
+    require_extra("train")
+    import tyro
+
+    arguments = tyro.cli(TrainArguments)
+    folder, config = _resumed(arguments) if arguments.resume else _started(arguments)
+    # torch takes seconds to import: not before the arguments are known to be good
+    from agents.training import Training
+
+    training = Training(folder, config, resume=arguments.resume is not None)
+    print(f"Training {config['algo']} on {config['env']}, seed {config['seed']}, into {folder}")
+    try:
+        finished = training.run()
+    except OSError as error:
+        kept = training.last_checkpoint
+        hint = f"The checkpoint {kept} is whole: make room and go on with {_resume_command(folder)}" if kept else ""
+        fail(f"{error.strerror or error}: {error.filename or folder}. {hint}", status=1)
+    if not finished:
+        print(f"Saved. Continue with: {_resume_command(folder)}")
+        raise SystemExit(130)
+    print(f"Finished. Model, metrics.csv, learning_curve.png and recordings are in {folder}")
+    print(f"Evaluate it with: python -m agents.evaluate --run {folder}")
+
+
+def _resume_command(folder: Path) -> str:
+    return f"python -m agents.train --resume {folder}"
+
+
+def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
+    """Check the arguments of a new run, make its folder and write its config.yml."""
+    import yaml
+
+    from agents import hyperparameters
+
+    choose("environment", arguments.env, environment_ids())
+    overrides = hyperparameters.parse_overrides(arguments.set)
+    if arguments.n_envs is not None:
+        overrides["n_envs"] = arguments.n_envs
+    values = hyperparameters.load(arguments.algo, arguments.env, config=arguments.config, overrides=overrides)
+    config = {
+        **{key: value for key, value in dataclasses.asdict(arguments).items() if key not in _NOT_IN_CONFIG},
+        "steps": arguments.steps or (None if arguments.minutes else int(values["n_timesteps"])),
+        "hyperparameters": values,
+        "versions": {"python": platform.python_version(), **_versions()},
+    }
+    _check(config)
+    folder = arguments.folder or _new_folder(arguments)
+    if (folder / "config.yml").exists():
+        raise BadInputError(f"The folder {folder} has a run already: use another, or {_resume_command(folder)}")
+    make_folder(folder)
+    (folder / "config.yml").write_text(yaml.safe_dump(config, sort_keys=False))
+    return folder, config
+
+
+_NOT_IN_CONFIG = {"set", "config", "n_envs", "out", "folder", "resume"}
+
+
+def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
+    """Read the config.yml of a run, with the budget that the arguments may extend."""
+    from agents.policies import read_config
+
+    assert arguments.resume is not None
+    config = read_config(arguments.resume)
+    if arguments.steps is not None or arguments.minutes is not None:
+        config |= {"steps": arguments.steps, "minutes": arguments.minutes}
+    _check(config)
+    return make_folder(arguments.resume), config
+
+
+def _check(config: dict[str, Any]) -> None:
+    choose("environment", config["env"], environment_ids())
+    lowest = {"steps": 1, "minutes": 0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1, "recordings": 0}
+    for key, bound in lowest.items():
+        if config[key] is not None and config[key] < bound:
+            raise BadInputError(f"{key} must be at least {bound}, got {config[key]}")
+
+
+def _new_folder(arguments: TrainArguments) -> Path:
+    name = f"{arguments.algo}-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
+    return arguments.out / arguments.env.rpartition("/")[2] / name
+
+
+def _versions() -> dict[str, str]:
+    found = {}
+    for package in VERSIONS:
+        try:
+            found[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:  # a bare clone that was not installed
+            continue
+    return found
+
+
+if __name__ == "__main__":
+    run_command(main)

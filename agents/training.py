@@ -1,0 +1,355 @@
+"""The training loop: Stable-Baselines3's algorithms, stepped one iteration at a time.
+
+An iteration ends with the update of the networks. Between two iterations nothing is half done, so that is where a run
+is measured, evaluated, saved and stopped; a run resumed from there goes on as if nothing had happened.
+"""
+
+import pickle
+import random
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import numpy as np
+import torch
+from stable_baselines3 import PPO, SAC
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.utils import safe_mean
+from stable_baselines3.common.vec_env import VecNormalize
+
+from agents import curves
+from agents.checkpoints import checkpoint_folders, last_whole_checkpoint, write_atomically, write_checkpoint
+from agents.checks import BadInputError
+from agents.evaluate import evaluate, record
+from agents.hyperparameters import algorithm_arguments, algorithm_class, normalize_arguments
+from agents.policies import TrainedPolicy, load_model, load_normalization
+from agents.progress import ProgressDisplay
+from agents.run_files import EVALUATIONS, METRICS, Table
+from agents.vec_env import BatchVecEnv, make_batch_vec_env
+
+SAC_STEPS_PER_ITERATION = 1024
+"""Environment steps that make an iteration of SAC, which updates its networks every few steps."""
+
+REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
+
+
+class Budget:
+    """How long a run may go on: environment steps, minutes, or what is spent first of both.
+
+    Parameters
+    ----------
+    steps
+        Environment steps, or None for no limit.
+    minutes
+        Wall-clock time of training and its evaluations, or None for no limit.
+    seconds_before
+        Time [s] spent before this process took over.
+    """
+
+    def __init__(self, *, steps: int | None, minutes: float | None, seconds_before: float = 0.0):
+        self.steps = steps
+        self.minutes = minutes
+        self._started = time.monotonic() - seconds_before
+
+    @property
+    def seconds(self) -> float:
+        """Time spent [s]."""
+        return time.monotonic() - self._started
+
+    def fraction(self, steps_done: int, *, seconds_ahead: float = 0.0) -> float:
+        """Return how much of the budget is spent, from 0 to 1, or would be in `seconds_ahead`."""
+        by_steps = 0.0 if self.steps is None else steps_done / self.steps
+        by_time = 0.0 if self.minutes is None else (self.seconds + seconds_ahead) / (60.0 * self.minutes)
+        return min(1.0, max(by_steps, by_time))
+
+
+class Training:
+    """A run from its folder: made anew or taken up from its last whole checkpoint.
+
+    Parameters
+    ----------
+    folder
+        The run's folder, which has its ``config.yml`` already.
+    config
+        What ``config.yml`` says.
+    resume
+        Whether to go on from the folder's last whole checkpoint.
+    """
+
+    def __init__(self, folder: Path, config: dict[str, Any], *, resume: bool):
+        self.folder = folder
+        self.config = config
+        torch.set_num_threads(config["threads"])
+        self.adapter = self._make_environment()
+        checkpoint = last_whole_checkpoint(folder / "checkpoints") if resume else None
+        if resume and checkpoint is None:
+            raise BadInputError(f"The run {folder} has no whole checkpoint to resume from; start it anew.")
+        saved: dict[str, Any] = {"seconds": 0.0, "evaluations": 0, "table_sizes": (0, 0)}
+        self.model = self._new_model() if checkpoint is None else self._load_model(checkpoint)
+        self.model.set_logger(Logger(folder=None, output_formats=[]))
+        if checkpoint is not None:
+            saved = self._load_state(checkpoint)
+        self.metrics = Table(folder / METRICS, size=saved["table_sizes"][0])
+        self.evaluations = Table(folder / EVALUATIONS, size=saved["table_sizes"][1])
+        self.evaluations_done: int = saved["evaluations"]
+        self._seconds_before: float = saved["seconds"]
+        self._checkpoint_at = 0.0
+        self._stop = False
+
+    # Making, saving and restoring
+
+    def _make_environment(self) -> BatchVecEnv:
+        values = self.config["hyperparameters"]
+        env_kwargs = values.get("env_kwargs") or {}
+        return make_batch_vec_env(
+            self.config["env"], n_envs=values.get("n_envs", 1), n_threads=self.config["threads"], **env_kwargs
+        )
+
+    def _new_model(self) -> Any:
+        values = self.config["hyperparameters"]
+        normalize = normalize_arguments(values)
+        env = self.adapter if normalize is None else VecNormalize(self.adapter, **normalize)
+        try:
+            return algorithm_class(self.config["algo"])(
+                env=env, seed=self.config["seed"], device="cpu", **algorithm_arguments(values)
+            )
+        except (TypeError, ValueError, AssertionError) as error:
+            raise BadInputError(f"Stable-Baselines3 refuses the hyperparameters: {error}") from error
+
+    def _load_model(self, checkpoint: Path) -> Any:
+        env: Any = self.adapter
+        if normalize_arguments(self.config["hyperparameters"]) is not None:
+            env = load_normalization(checkpoint / "vecnormalize.pkl")
+            env.set_venv(self.adapter)
+        return load_model(checkpoint / "model.zip", self.config["algo"], env=env, force_reset=False)
+
+    def _save_files(self, folder: Path) -> None:
+        self.model.save(folder / "model.zip")
+        normalize = self.model.get_vec_normalize_env()
+        if normalize is not None:
+            normalize.save(folder / "vecnormalize.pkl")
+        state = {
+            "environment": self.adapter.get_state(),
+            "discounted_returns": None if normalize is None else normalize.returns,
+            "torch": torch.get_rng_state(),
+            "numpy": np.random.get_state(),
+            "python": random.getstate(),
+            "action_space": self.model.action_space.np_random.bit_generator.state,
+            "seconds": self.budget.seconds,
+            "evaluations": self.evaluations_done,
+            "table_sizes": (self.metrics.size, self.evaluations.size),
+        }
+        (folder / "state.pkl").write_bytes(pickle.dumps(state))
+        if isinstance(self.model, SAC):
+            self._save_replay_buffer(folder / "replay_buffer.npz")
+
+    def _load_state(self, checkpoint: Path) -> dict[str, Any]:
+        state = pickle.loads((checkpoint / "state.pkl").read_bytes())
+        self.adapter.set_state(state["environment"])
+        normalize = self.model.get_vec_normalize_env()
+        if normalize is not None:
+            normalize.returns = state["discounted_returns"]
+        if isinstance(self.model, SAC):
+            self._load_replay_buffer(checkpoint / "replay_buffer.npz")
+        # the generators come last, since making a model seeds them
+        torch.set_rng_state(state["torch"])
+        np.random.set_state(state["numpy"])
+        random.setstate(state["python"])
+        self.model.action_space.np_random.bit_generator.state = state["action_space"]
+        return state
+
+    def _save_replay_buffer(self, path: Path) -> None:
+        buffer = self.model.replay_buffer
+        filled = buffer.size()
+        np.savez(path, pos=buffer.pos, full=buffer.full, **{k: getattr(buffer, k)[:filled] for k in REPLAY_ARRAYS})
+
+    def _load_replay_buffer(self, path: Path) -> None:
+        buffer = self.model.replay_buffer
+        with np.load(path) as saved:
+            for name in REPLAY_ARRAYS:
+                getattr(buffer, name)[: len(saved[name])] = saved[name]
+            buffer.pos, buffer.full = int(saved["pos"]), bool(saved["full"])
+
+    # Running
+
+    def run(self) -> bool:
+        """Train until the budget is spent, or until asked to stop, and save. Return whether the budget is spent."""
+        previous = {number: signal.signal(number, self._ask_to_stop) for number in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            with ProgressDisplay() as self.display:
+                self._compile()
+                self.budget = Budget(
+                    steps=self.config["steps"], minutes=self.config["minutes"], seconds_before=self._seconds_before
+                )
+                finished = self._loop()
+                self._finish()
+        finally:
+            for number, handler in previous.items():
+                signal.signal(number, handler)
+            self.metrics.close()
+            self.evaluations.close()
+            self.adapter.close()
+        return finished
+
+    def _compile(self) -> None:
+        """Step one environment, so that compiling does not count as training time."""
+        env = make_batch_vec_env(self.config["env"], n_envs=1, n_threads=1)
+        env.reset()
+        env.step(np.zeros((1, *env.action_space.shape), np.float32))  # type: ignore[misc]
+        env.close()
+
+    def _loop(self) -> bool:
+        iterate = ITERATIONS[type(self.model)]
+        callback = self._begin()
+        duration = 0.0
+        self._evaluate_when_due()
+        while self.budget.fraction(self.model.num_timesteps, seconds_ahead=duration) < 1.0 and not self._stop:
+            started, steps_before = time.monotonic(), self.model.num_timesteps
+            iterate(self.model, callback, self.budget)
+            duration = time.monotonic() - started
+            self._measure((self.model.num_timesteps - steps_before) / duration)
+            self._evaluate_when_due()
+            if self.budget.seconds - self._checkpoint_at > 60.0 * self.config["checkpoint_minutes"]:
+                self._checkpoint()
+        return not self._stop
+
+    def _begin(self) -> BaseCallback:
+        resumed = self.model.num_timesteps > 0
+        _, callback = self.model._setup_learn(
+            self.config["steps"] or 2**62, callback=None, reset_num_timesteps=not resumed
+        )
+        self._checkpoint_at = self.budget.seconds
+        return callback
+
+    def _ask_to_stop(self, number: int, frame: FrameType | None) -> None:
+        if self._stop:
+            raise KeyboardInterrupt
+        self._stop = True
+        self.display.say("Stopping after this update; interrupt once more to stop at once.")
+
+    def _measure(self, steps_per_second: float) -> None:
+        """Append what this iteration came to to metrics.csv and to the display."""
+        episodes = self.model.ep_info_buffer
+        means = {key: float(safe_mean([e[key] for e in episodes])) for key in ("r", "l", "distance")}
+        terms = [f"reward_{term}" for term in self.adapter.batch.task.reward_weights]
+        row = {
+            "steps": self.model.num_timesteps,
+            "seconds": self.budget.seconds,
+            "steps_per_second": steps_per_second,
+            "return": means["r"],
+            "length": means["l"],
+            "distance": means["distance"],
+            "success": float(safe_mean(self.model.ep_success_buffer)),
+            **{term: float(safe_mean([e[term] for e in episodes])) for term in terms},
+            **{key.removeprefix("train/"): _plain(v) for key, v in self.model.logger.name_to_value.items()},
+        }
+        self.model.logger.dump(self.model.num_timesteps)
+        self.metrics.append(row)
+        shown = ("steps", "steps_per_second", "return", "distance", "success")
+        fraction = self.budget.fraction(self.model.num_timesteps)
+        self.display.update(fraction, {key.replace("steps_per_second", "steps/s"): row[key] for key in shown})
+
+    def _evaluate_when_due(self) -> None:
+        """Evaluate at the start and whenever another equal part of the budget is spent."""
+        points = self.config["evaluations"]
+        if points and self.budget.fraction(self.model.num_timesteps) * points >= self.evaluations_done:
+            self._evaluate()
+
+    def _evaluate(self) -> None:
+        result = evaluate(
+            self._policy(),
+            self.config["env"],
+            episodes=self.config["evaluation_episodes"],
+            seed=self.config["evaluation_seed"],
+            n_threads=self.config["threads"],
+            env_kwargs=self.config["hyperparameters"].get("env_kwargs"),
+        ).summary()
+        steps = self.model.num_timesteps
+        row = {
+            "steps": steps,
+            "seconds": self.budget.seconds,
+            "return": result["return_mean"],
+            "return_ci95": result["return_ci95"],
+            "distance": result["distance_mean"],
+            "distance_ci95": result["distance_ci95"],
+            "success": result["success_rate"],
+            "length": result["length_mean"],
+            "divergences": result["divergences"],
+            **{f"reward_{term}": mean for term, mean in result["terms"].items()},
+        }
+        self.evaluations.append(row)
+        points = self.config["evaluations"]
+        self.evaluations_done = int(self.budget.fraction(steps) * points) + 1
+        self.display.say(
+            f"evaluation at {steps:,} steps: return {row['return']:.3f} ± {row['return_ci95']:.3f}, "
+            f"distance {row['distance']:.3f} m, success {row['success']:.0%}"
+        )
+
+    def _policy(self) -> TrainedPolicy:
+        return TrainedPolicy(self.model, self.model.get_vec_normalize_env())
+
+    def _checkpoint(self) -> None:
+        write_checkpoint(self.folder / "checkpoints", self.model.num_timesteps, self._save_files)
+        self._checkpoint_at = self.budget.seconds
+
+    def _finish(self) -> None:
+        """Save the state for a later ``--resume``, the model for use, the curve and a recording."""
+        self._checkpoint()
+        write_atomically(self.folder / "model.zip", self.model.save)
+        normalize = self.model.get_vec_normalize_env()
+        if normalize is not None:
+            write_atomically(self.folder / "vecnormalize.pkl", normalize.save)
+        figure = curves.plot_run(self.folder)
+        write_atomically(self.folder / "learning_curve.png", lambda path: curves.save(figure, path))
+        if not self._stop:
+            self._record()
+
+    def _record(self) -> None:
+        folder = self.folder / "recordings"
+        folder.mkdir(exist_ok=True)
+        seed, env_kwargs = self.config["evaluation_seed"], self.config["hyperparameters"].get("env_kwargs") or {}
+        for i in range(self.config["recordings"]):
+            record(self._policy(), self.config["env"], seed=seed + i, folder=folder, env_kwargs=env_kwargs)
+
+    @property
+    def last_checkpoint(self) -> Path | None:
+        """The newest checkpoint, if there is one."""
+        folders = checkpoint_folders(self.folder / "checkpoints")
+        return folders[-1] if folders else None
+
+
+def iterate_ppo(model: PPO, callback: BaseCallback, budget: Budget) -> None:
+    """Collect ``n_steps`` steps of every environment and update the networks from them."""
+    model.collect_rollouts(model.env, callback, model.rollout_buffer, n_rollout_steps=model.n_steps)  # type: ignore[arg-type]
+    model._current_progress_remaining = 1.0 - budget.fraction(model.num_timesteps)
+    model.train()
+
+
+def iterate_sac(model: SAC, callback: BaseCallback, budget: Budget) -> None:
+    """Alternate ``train_freq`` steps and their updates of the networks, for `SAC_STEPS_PER_ITERATION` steps."""
+    end = model.num_timesteps + SAC_STEPS_PER_ITERATION
+    while model.num_timesteps < end:
+        collected = model.collect_rollouts(
+            model.env,  # type: ignore[arg-type]
+            callback,
+            train_freq=model.train_freq,  # type: ignore[arg-type]
+            replay_buffer=model.replay_buffer,  # type: ignore[arg-type]
+            action_noise=model.action_noise,
+            learning_starts=model.learning_starts,
+            log_interval=None,
+        )
+        model._current_progress_remaining = 1.0 - budget.fraction(model.num_timesteps)
+        updates = model.gradient_steps if model.gradient_steps >= 0 else collected.episode_timesteps
+        if model.num_timesteps > model.learning_starts and updates > 0:
+            model.train(gradient_steps=updates, batch_size=model.batch_size)
+
+
+ITERATIONS: dict[type, Callable[[Any, BaseCallback, Budget], None]] = {PPO: iterate_ppo, SAC: iterate_sac}
+
+
+def _plain(value: Any) -> int | float:
+    return value if isinstance(value, int) else float(value)

@@ -1,0 +1,165 @@
+"""The batched environment presented as a Stable-Baselines3 ``VecEnv``."""
+
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.vec_env import VecEnv
+
+import elastica_gym  # noqa: F401  registers the environments
+
+VecEnvIndices = None | int | Sequence[int]
+
+
+class BatchVecEnv(VecEnv):
+    """A batch of environments as Stable-Baselines3 sees it.
+
+    Rollouts equal those of a ``DummyVecEnv`` of the same environments with the same seeds bit for bit. It does a
+    monitor's work as well: sums of reward and of every reward term over the episode.
+
+    Parameters
+    ----------
+    batch
+        An ``elastica_gym`` environment made by ``gymnasium.make_vec`` with ``AutoresetMode.SAME_STEP``.
+
+    Attributes
+    ----------
+    batch_infos : dict
+        What the last step reported of every environment, as arrays of shape (n,).
+
+    Notes
+    -----
+    The dictionaries of environments in mid-episode are one and the same object: treat them as read-only. That of an
+    environment whose episode ended is its own, with ``terminal_observation``, ``TimeLimit.truncated``, ``is_success``,
+    ``termination_reason``, ``distance`` and ``episode``: return ``r``, length ``l``, seconds ``t`` since this object
+    was made, ``distance``, and ``reward_<term>``, the sum of each term over the episode.
+    """
+
+    def __init__(self, batch: Any):
+        mode = batch.metadata["autoreset_mode"]
+        if mode != AutoresetMode.SAME_STEP:
+            raise ValueError(f"batch has autoreset_mode {mode}; Stable-Baselines3 needs AutoresetMode.SAME_STEP")
+        self.batch = batch
+        super().__init__(batch.num_envs, batch.single_observation_space, batch.single_action_space)
+        self.metadata = batch.metadata
+        self.batch_infos: dict[str, Any] = {}
+        self._actions: np.ndarray = np.zeros((self.num_envs, *self.action_space.shape), np.float32)  # type: ignore[misc]
+        self._running: dict[str, Any] = {"TimeLimit.truncated": False}
+        self._sums = {key: np.zeros(self.num_envs) for key in ("r", *self._term_keys())}
+        self._lengths = np.zeros(self.num_envs, np.int64)
+        self._started = time.time()
+
+    def _term_keys(self) -> list[str]:
+        return [f"reward_{term}" for term in self.batch.task.reward_weights]
+
+    def reset(self) -> np.ndarray:
+        """Reset every environment, with the seeds given to ``seed`` if there are any, and return (n, d) float32."""
+        seeds = None if all(s is None for s in self._seeds) else list(self._seeds)
+        options = self._options[0]
+        if any(other != options for other in self._options):
+            raise ValueError(f"options must be the same for all environments of a batch, got {self._options}")
+        observations, infos = self.batch.reset(seed=seeds, options=options or None)
+        self.reset_infos = [{key: value[i] for key, value in infos.items()} for i in range(self.num_envs)]
+        self._reset_seeds()
+        self._reset_options()
+        for total in self._sums.values():
+            total[:] = 0.0
+        self._lengths[:] = 0
+        return observations.copy()
+
+    def step_async(self, actions: np.ndarray) -> None:
+        """Keep the actions, of shape (n, 42), for ``step_wait``."""
+        self._actions = actions
+
+    def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
+        """Advance by one control step.
+
+        Returns
+        -------
+        observations
+            (n, d) float32; of an environment whose episode ended, the first one of its next episode.
+        rewards
+            (n,) float32, as ``DummyVecEnv`` rounds them.
+        dones
+            (n,) bool.
+        infos
+            One dictionary per environment; see the notes of the class.
+        """
+        observations, rewards, terminated, truncated, infos = self.batch.step(self._actions)
+        dones = terminated | truncated
+        ended = np.flatnonzero(dones)
+        last = infos["final_info"] if ended.size else infos
+        self.batch_infos = last
+        self._sums["r"] += rewards
+        for key in self._term_keys():
+            self._sums[key] += np.where(dones, last[key], infos[key]) if ended.size else infos[key]
+        self._lengths += 1
+        env_infos = [self._running] * self.num_envs
+        for i in ended:
+            env_infos[i] = self._episode_info(i, bool(truncated[i] and not terminated[i]), infos)
+        self._lengths[ended] = 0
+        for total in self._sums.values():
+            total[ended] = 0.0
+        return observations.copy(), rewards.astype(np.float32), dones, env_infos
+
+    def _episode_info(self, i: int, timed_out: bool, infos: dict[str, Any]) -> dict[str, Any]:
+        last = {key: infos["final_info"][key][i] for key in ("is_success", "termination_reason", "distance")}
+        episode = {key: float(total[i]) for key, total in self._sums.items()}
+        episode |= {"l": int(self._lengths[i]), "t": round(time.time() - self._started, 6)}
+        episode["distance"] = float(last["distance"])
+        return {
+            **last,
+            "is_success": bool(last["is_success"]),
+            "TimeLimit.truncated": timed_out,
+            "terminal_observation": infos["final_obs"][i].copy(),
+            "episode": episode,
+        }
+
+    def get_state(self) -> dict[str, Any]:
+        """Everything that the next step depends on, picklable."""
+        return {
+            "batch": self.batch.get_state(),
+            "sums": {key: total.copy() for key, total in self._sums.items()},
+            "lengths": self._lengths.copy(),
+        }
+
+    def set_state(self, state: dict[str, Any]) -> None:
+        """Continue, bit for bit, from what ``get_state`` returned."""
+        self.batch.set_state(state["batch"])
+        for key, total in state["sums"].items():
+            self._sums[key][:] = total
+        self._lengths[:] = state["lengths"]
+
+    def close(self) -> None:
+        """Close the batch."""
+        self.batch.close()
+
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
+        """Return the batch's attribute, once for each of `indices`."""
+        return [getattr(self.batch, attr_name)] * len(list(self._get_indices(indices)))
+
+    def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
+        """Set the batch's attribute; a part of a batch cannot have its own."""
+        if indices is not None:
+            raise ValueError(f"indices must be None: the environments of a batch share {attr_name!r}, got {indices}")
+        setattr(self.batch, attr_name, value)
+
+    def env_method(self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any) -> list[Any]:
+        """Call the batch's method once and return its result, once for each of `indices`."""
+        return [getattr(self.batch, method_name)(*args, **kwargs)] * len(list(self._get_indices(indices)))
+
+    def env_is_wrapped(self, wrapper_class: type[gym.Wrapper], indices: VecEnvIndices = None) -> list[bool]:
+        """Tell whether the environments do the work of `wrapper_class`: of ``Monitor`` alone."""
+        return [wrapper_class is Monitor] * len(list(self._get_indices(indices)))
+
+
+def make_batch_vec_env(env_id: str, *, n_envs: int, n_threads: int = 2, **env_kwargs: Any) -> BatchVecEnv:
+    """Make `n_envs` environments of the registered id, stepped by `n_threads` threads, for Stable-Baselines3."""
+    batch = gym.make_vec(
+        env_id, num_envs=n_envs, autoreset_mode=AutoresetMode.SAME_STEP, n_threads=n_threads, **env_kwargs
+    )
+    return BatchVecEnv(batch)
