@@ -1,1 +1,14 @@
+"""Reinforcement learning on soft animals.
 
+``import elastica_gym`` registers the environments with Gymnasium::
+
+    import elastica_gym, gymnasium
+    env = gymnasium.make("elastica_gym/SnakeForward-v0")
+    envs = gymnasium.make_vec("elastica_gym/SnakeForward-v0", num_envs=64)
+"""
+
+from .envs import register_all
+
+__version__ = "0.1.0"
+
+register_all()

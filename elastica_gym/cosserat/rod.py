@@ -1,5 +1,6 @@
 """A rod as a user describes it: geometry, material and rest shape, before it becomes part of a Model."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -203,6 +204,13 @@ def stable_time_step(rod: Rod) -> float:
     bending = 0.5 * (p + q) + np.sqrt(0.25 * (p - q) ** 2 + s**2)
     fastest = np.max([bending, Y / l**2, G / l**2]) / rho
     return float(1.0 / np.sqrt(fastest))
+
+
+def require_stable(rods: Sequence[Rod], time_step: float) -> None:
+    """Raise ValueError unless ``time_step`` is below that of every rod's `stable_time_step` [s]."""
+    bound = min(stable_time_step(rod) for rod in rods)
+    if not time_step < bound:
+        raise ValueError(f"the time step must be below {bound:.4g} s for these rods to be stable, not {time_step:g} s")
 
 
 def require_positive(name: str, value: float) -> None:

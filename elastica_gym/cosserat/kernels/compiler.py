@@ -133,14 +133,15 @@ def _cpu() -> str:
 
 
 class _EntryLocator:
-    """Tell Numba's cache where an entry is kept; the folder's name is the stamp of freshness."""
+    """Tell Numba's cache where an entry is kept, and whether it is fresh by the text of its own file."""
 
-    def __init__(self, py_func: Callable) -> None:
+    def __init__(self, py_func: Callable, py_file: str) -> None:
         self._name = py_func.__qualname__
+        self._file = Path(py_file)
 
     @classmethod
     def from_function(cls, py_func: Callable, py_file: str) -> "_EntryLocator":
-        return cls(py_func)
+        return cls(py_func, py_file)
 
     def ensure_cache_path(self) -> None:
         cache_folder()
@@ -149,7 +150,7 @@ class _EntryLocator:
         return str(cache_folder())
 
     def get_source_stamp(self) -> str:
-        return cache_folder().name
+        return hashlib.sha256(self._file.read_bytes()).hexdigest()
 
     def get_disambiguator(self) -> str:
         return self._name

@@ -1,0 +1,93 @@
+"""The continuum snake (Zhang et al. 2021; Gazzola et al. 2018, section 5.2) on anisotropic ground.
+
+A rod of 0.35 m, of 1,000 kg/m^3 and 1 MPa, lies on a plane whose Coulomb friction is 1 : 1.5 : 2
+forward, backward and sideways, in gravity. Its head is the last node: forward is along the tangent.
+
+Damping is the original's: 0.0001 kg/(m s) against velocity, which is next to nothing, and as many
+kg m/s against angular velocity, which is 580 1/s for a thin rod. The second is what keeps strong
+random actions from shaking the body until the simulation breaks; a uniform damping of all velocities
+would have to be so strong (10 1/s) that it halves the speed of every gait.
+
+Muscles are chosen here: they reach 2.5 + 1.75 + 1.25 mN m where all three levels act, enough to
+play the travelling wave of that paper, of 3.5 mN m, along most of the body.
+"""
+
+import functools
+
+import numpy as np
+
+from ..cosserat import Plane, Rod, build_model, stable_time_step
+from ..muscles import N_ACTIVATIONS, Muscles, couple_matrix
+from .body import Body, Senses
+
+LENGTH = 0.35
+RADIUS = 0.011 * LENGTH
+DENSITY = 1000.0
+YOUNGS_MODULUS = 1e6
+SHEAR_MODULUS = YOUNGS_MODULUS / 1.5
+GRAVITY = 9.80665
+FROUDE = 0.1
+PERIOD = 2.0
+FRICTION = LENGTH / (PERIOD**2 * GRAVITY * FROUDE)
+"""Coefficient of friction forward; backward it is 1.5 and sideways 2 times as much"""
+VISCOSITY = 1e-4
+"""Damping force per velocity and length [kg/(m s)], and torque per angular velocity and length [kg m/s]"""
+SIM_DT = 1e-4
+"""Largest time step at which random actions diverge in fewer than 1 of 10,000 control steps [s]"""
+
+MUSCLES = Muscles(
+    magnitudes={"normal": (2.5e-3, 1.75e-3, 1.25e-3), "binormal": (2.5e-3, 1.75e-3, 1.25e-3),
+                "tangent": (1e-3, 7e-4, 4e-4)},
+    arms=((1.0, 0.5), (0.5, 0.0)),
+    activation_time=0.06,
+)
+
+
+@functools.cache
+def snake(n_elements: int = 50) -> Body:
+    """Return the snake, straight along +x on the plane y = 0.
+
+    Parameters
+    ----------
+    n_elements : int
+        At least 16, so that every part of the body has something to feel.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer elements.
+    """
+    if n_elements < 16:
+        raise ValueError(f"n_elements must be at least 16, not {n_elements}")
+    rod = Rod.straight(
+        n_elements, start=(-0.5 * LENGTH, RADIUS, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0),
+        length=LENGTH, radius=RADIUS, density=DENSITY, youngs_modulus=YOUNGS_MODULUS, shear_modulus=SHEAR_MODULUS,
+        viscosity=VISCOSITY, torque_viscosity=VISCOSITY,
+    )  # fmt: skip
+    friction = (FRICTION, 1.5 * FRICTION, 2.0 * FRICTION)
+    # friction is kinetic: the original's static coefficients are zero
+    ground = Plane(stiffness=1.0, damping=1e-6, kinetic_friction=friction, slip_tolerance=1e-8)
+    model = build_model(
+        [rod], planes=[ground], gravity=(0.0, -GRAVITY, 0.0), activation_time=MUSCLES.activation_time
+    )
+    start = int(model.first_slot[0])
+    couples = np.zeros((N_ACTIVATIONS, 3, model.mass.size))
+    couples[:, :, start : start + n_elements - 1] = couple_matrix(MUSCLES, rod)
+    return Body(
+        name="snake", rods=(rod,), model=model, muscles=MUSCLES, arms=("front", "rear"), couples=couples,
+        senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
+        sim_dt=min(SIM_DT, 0.8 * stable_time_step(rod)),
+    )  # fmt: skip
+
+
+def _senses(start: int, n: int, weight: float) -> Senses:
+    half = n // 2
+
+    def spread(first: int, last: int, count: int) -> np.ndarray:
+        return start + np.round(np.linspace(first, last, count)).astype(np.int64)
+
+    return Senses(
+        nodes=spread(0, n, 9), joints=spread(2, n - 4, 10), skin=spread(0, n, 9),
+        front=np.array([start + half, start + n]), rear=np.array([start, start + half]), head=start + n,
+        length=LENGTH, curvature_scale=10.0, weight=weight,
+    )  # fmt: skip

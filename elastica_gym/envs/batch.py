@@ -1,0 +1,388 @@
+"""The batched environment: all logic, over a leading environment axis."""
+
+import functools
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from copy import deepcopy
+from typing import Any
+
+import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+
+from ..bodies.body import Pose, activate, feel, make_pose
+from ..cosserat import advance, at_rest
+from ..cosserat.model import Array
+from ..cosserat.rod import require_not_negative, require_positive, require_stable
+from ..muscles import N_ACTIVATIONS, activation_names
+from .starts import draw_start
+from .task import Situation, Task
+
+CONTROL_DT = 0.05
+CLOCK_PERIOD = 1.0
+# largest absolute value of positions, velocities, curvatures and contact in observations
+READING_BOUNDS = (1.0, 20.0, 10.0, 50.0)
+
+PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length")
+
+
+class BatchEnv(VectorEnv):
+    """A batch of animals, each at its own task.
+
+    Made by ``gymnasium.make_vec("elastica_gym/<Name>-v0", num_envs=...)``.
+
+    Parameters
+    ----------
+    task : Task
+    num_envs : int
+        1 to 4,096.
+    control_dt : float
+        Duration of a control step [s].
+    sim_dt : float, optional
+        Largest time step of the physics [s]; a control step takes as few equal ones as fit. By
+        default the body's, which holds the bound on divergence.
+    duration : float, optional
+        Simulated time of an episode [s]; by default the task's.
+    n_threads : int, optional
+        Threads that share the environments; by default the number of CPUs. Results do not depend on it.
+    autoreset_mode : AutoresetMode
+        What becomes of an environment whose episode has ended.
+    weights : dict of str to float, optional
+        Weights of reward terms that differ from the task's.
+    body_kwargs : dict, optional
+        Passed to the function that makes the body, as ``n_elements`` of the snake.
+
+    Raises
+    ------
+    ValueError
+        If an argument cannot be, or ``sim_dt`` is above the stable time step.
+    """
+
+    def __init__(
+        self, task: Task, num_envs: int = 1, *, control_dt: float = CONTROL_DT, sim_dt: float | None = None,
+        duration: float | None = None, n_threads: int | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP, weights: dict[str, float] | None = None,
+        body_kwargs: dict[str, Any] | None = None, render_mode: None = None,
+    ) -> None:  # fmt: skip
+        if not 1 <= num_envs <= 4096:
+            raise ValueError(f"num_envs must be from 1 to 4096, not {num_envs}")
+        if render_mode is not None:
+            raise ValueError(f"render_mode must be None, not {render_mode!r}; record a rollout to look at it")
+        self.task, self.num_envs, self.render_mode = task, num_envs, render_mode
+        self.body = task.make_body(**(body_kwargs or {}))
+        self.weights = _merge_weights(task, weights or {})
+        self.n_threads = n_threads or os.cpu_count() or 1
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self._set_times(control_dt, self.body.sim_dt if sim_dt is None else sim_dt, duration or task.duration)
+        self.metadata = {"render_modes": [], "render_fps": round(1.0 / control_dt), "autoreset_mode": self.autoreset_mode}
+        self._make_spaces()
+        self._allocate()
+
+    def _set_times(self, control_dt: float, sim_dt: float, duration: float) -> None:
+        require_positive("control_dt", control_dt)
+        require_positive("sim_dt", sim_dt)
+        require_positive("duration", duration)
+        require_stable(self.body.rods, sim_dt)
+        self.control_dt = control_dt
+        # a hair less, so that rounding in the quotient costs no extra step
+        self.n_substeps = max(1, int(np.ceil(control_dt / sim_dt - 1e-9)))
+        self.sim_dt = control_dt / self.n_substeps
+        self.max_episode_steps = max(1, round(duration / control_dt))
+
+    def _make_spaces(self) -> None:
+        senses = self.body.senses
+        counts = (3 * senses.nodes.size, 3 * senses.nodes.size, 3 * senses.joints.size, senses.skin.size - 1)
+        bounds = [*np.repeat(READING_BOUNDS, counts), *np.ones(N_ACTIVATIONS), 1.0, 1.0, 1.0, *self.task.goal_bounds]
+        high = np.array(bounds, dtype=np.float32)
+        low = -high
+        for sign_free in (slice(sum(counts[:3]), sum(counts)), self._time_left_index):
+            low[sign_free] = 0.0
+        self.observation_names = (
+            *self.body.reading_names(), *(f"activation/{name}" for name in activation_names(self.body.arms)),
+            "clock/sine", "clock/cosine", "time_left", *self.task.goal_names,
+        )  # fmt: skip
+        self.single_observation_space = Box(low, high, dtype=np.float32)
+        self.single_action_space = Box(-1.0, 1.0, (N_ACTIVATIONS,), dtype=np.float32)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
+
+    @property
+    def _time_left_index(self) -> int:
+        return self.body.n_readings + N_ACTIVATIONS + 2
+
+    def _allocate(self) -> None:
+        n = self.num_envs
+        self.state, self.control = at_rest(self.body.model, self.body.rods, n)
+        self.pose, self._before = make_pose(n), make_pose(n)
+        self.goal = np.zeros((n, 0))
+        self.elapsed = np.zeros(n, dtype=np.int64)
+        self.activations = np.zeros((n, N_ACTIVATIONS))
+        self.levels = np.zeros((n, N_ACTIVATIONS))
+        self._readings = np.zeros((n, self.body.n_readings))
+        self._observations = np.zeros((n, len(self.observation_names)), dtype=np.float32)
+        self._distance = np.zeros(n)
+        self._ended = np.zeros(n, dtype=bool)
+        self._generators: list[np.random.Generator] | None = None
+
+    # the interface of gymnasium.vector.VectorEnv
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Array, dict[str, Any]]:
+        """Start new episodes.
+
+        Parameters
+        ----------
+        seed : int or sequence of int, optional
+            An integer s seeds environment i with s + i. Without, the generators go on.
+        options : dict, optional
+            ``{"reset_mask": (B,) bool}`` resets only where it is true.
+
+        Returns
+        -------
+        tuple
+            Observations (B, d) and an empty info.
+        """
+        mask = np.ones(self.num_envs, dtype=bool)
+        if options and "reset_mask" in options:
+            mask = _checked_mask(options["reset_mask"], self.num_envs)
+        self._seed(seed, mask)
+        self._start(mask)
+        return self._observations.copy(), {}
+
+    def step(self, actions: Array) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
+        """Advance every environment by one control step.
+
+        Parameters
+        ----------
+        actions : Array
+            Activations, (B, 42); clipped to [-1, 1].
+
+        Returns
+        -------
+        tuple
+            Observations (B, d), rewards (B,), terminated (B,), truncated (B,) and info: arrays over the batch.
+
+        Raises
+        ------
+        ValueError
+            If the actions have another shape or are not numbers.
+        """
+        if self._generators is None:
+            raise RuntimeError("call reset before step")
+        self.activations[:] = self._checked_actions(actions)
+        begin = self._ended.copy() if self.autoreset_mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, bool)
+        self._advance()
+        sound = self.pose.sound == 1
+        rewards, info = self._judge(sound)
+        terminated = ~sound | (info["is_success"] & self.task.ends_on_success)
+        truncated = ~terminated & (self.elapsed >= self.max_episode_steps)
+        info["termination_reason"] = _reasons(sound, terminated, truncated)
+        self._observe(sound)
+        if begin.any():
+            self._start(begin)
+            self._blank(begin, rewards, terminated, truncated, info)
+        self._ended = terminated | truncated
+        if self.autoreset_mode == AutoresetMode.SAME_STEP and self._ended.any():
+            info = self._restart(self._ended, info)
+        return self._observations.copy(), rewards, terminated, truncated, info
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Nothing is held open: threads belong to the process."""
+
+    # one control step
+
+    def _checked_actions(self, actions: Array) -> Array:
+        values = np.asarray(actions, dtype=np.float64)
+        if values.shape != self.action_space.shape:
+            raise ValueError(f"actions must have shape {self.action_space.shape}, not {values.shape}")
+        if np.isnan(values).any():
+            raise ValueError(f"actions must be numbers, but those of environment {np.argwhere(np.isnan(values))[0, 0]} "
+                             "hold NaN")  # fmt: skip
+        return np.clip(values, -1.0, 1.0)
+
+    def _advance(self) -> None:
+        """Move the animals, and feel where they are."""
+        activate(self.body.couples, self.activations, self.control.couple)
+        self._in_threads(self.sim_dt, self.n_substeps)
+        # the physics does the same to couples, in n_substeps parts
+        tau = self.body.muscles.activation_time
+        self.levels += (self.activations - self.levels) * (1.0 - np.exp(-self.control_dt / tau))
+        self.elapsed += 1
+        for old, new in zip(self._before, self.pose, strict=True):
+            old[...] = new
+        feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
+
+    def _in_threads(self, dt: float, n_substeps: int) -> None:
+        n_threads = min(self.n_threads, self.num_envs)
+        borders = [self.num_envs * t // n_threads for t in range(n_threads + 1)]
+        spans = list(zip(borders[:-1], borders[1:], strict=True))
+        futures = [
+            _pool(os.getpid(), n_threads - 1).submit(advance, self.body.model, self.state, self.control, *span, dt, n_substeps)
+            for span in spans[1:]
+        ]
+        advance(self.body.model, self.state, self.control, *spans[0], dt, n_substeps)
+        for future in futures:
+            future.result()
+
+    def situation(self) -> Situation:
+        """Return where the batch stands."""
+        left = 1.0 - self.elapsed / self.max_episode_steps
+        return Situation(self.pose, self._before, self.goal, self.activations, left, self.control_dt, self.body)
+
+    def _judge(self, sound: Array) -> tuple[Array, dict[str, Any]]:
+        """Return the rewards and an info with each of their terms; where physics has failed, only the penalty."""
+        situation = self.situation()
+        rewards, info = np.zeros(self.num_envs), {}
+        with np.errstate(invalid="ignore"):
+            for name, term in self.task.reward_terms.items():
+                value = np.where(sound, self.weights[name] * term(situation), 0.0)
+                info[f"reward_{name}"] = value
+                rewards += value
+            info["reward_diverged"] = np.where(sound, 0.0, self.weights["diverged"])
+            rewards += info["reward_diverged"]
+            self._distance = np.where(sound, self.task.distance(situation), self._distance)
+            info["distance"] = self._distance.copy()
+            info["is_success"] = sound & self.task.succeeds(situation)
+        return rewards, info
+
+    def _observe(self, where: Array) -> None:
+        """Write the observations of some environments; the others keep their last ones."""
+        angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
+        situation = self.situation()
+        with np.errstate(invalid="ignore"):
+            columns = np.concatenate(
+                [self._readings, self.levels, np.sin(angle)[:, None], np.cos(angle)[:, None],
+                 situation.time_left[:, None], self.task.see_goal(situation)], axis=1)  # fmt: skip
+        space = self.single_observation_space
+        self._observations[where] = np.clip(columns[where], space.low, space.high)
+
+    # episodes
+
+    def _seed(self, seed: int | Sequence[int | None] | None, mask: Array) -> None:
+        seeds = [seed + i for i in range(self.num_envs)] if isinstance(seed, (int, np.integer)) else seed
+        if seeds is None:
+            seeds = [None] * self.num_envs
+        elif len(seeds) != self.num_envs:
+            raise ValueError(f"seed must be an integer or {self.num_envs} of them, not {len(seeds)}")
+        if self._generators is None:
+            self._generators = [seeding.np_random(each)[0] for each in seeds]
+            return
+        for i in np.flatnonzero(mask):
+            if seeds[i] is not None:
+                self._generators[i] = seeding.np_random(seeds[i])[0]
+
+    def _start(self, mask: Array) -> None:
+        """Draw new episodes where the mask is true, and observe them."""
+        assert self._generators is not None
+        for i in np.flatnonzero(mask):
+            draw_start(self._generators[i], self.body, self.state, i)
+        self.control.couple[mask] = 0.0
+        self.elapsed[mask] = 0
+        self.activations[mask] = self.levels[mask] = self._distance[mask] = 0.0
+        self._ended[mask] = False
+        feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
+        for old, new in zip(self._before, self.pose, strict=True):
+            old[mask] = new[mask]
+        for i in np.flatnonzero(mask):
+            goal = self.task.draw_goal(self._generators[i], self._situation_of(i))
+            if self.goal.shape[1] != goal.size:
+                self.goal = np.zeros((self.num_envs, goal.size))
+            self.goal[i] = goal
+        self._observe(mask)
+
+    def _situation_of(self, i: int) -> Situation:
+        one = slice(i, i + 1)
+        s = self.situation()
+        return s._replace(pose=Pose(*(a[one] for a in s.pose)), before=Pose(*(a[one] for a in s.before)),
+                          goal=s.goal[one], activations=s.activations[one], time_left=s.time_left[one])  # fmt: skip
+
+    def _blank(self, begun: Array, rewards: Array, terminated: Array, truncated: Array, info: dict[str, Any]) -> None:
+        """Clear what a step that only began an episode returns (autoreset NEXT_STEP)."""
+        for values in (rewards, terminated, truncated, *info.values()):
+            values[begun] = "" if values.dtype == object else 0
+
+    def _restart(self, ended: Array, info: dict[str, Any]) -> dict[str, Any]:
+        """Begin new episodes where old ones ended, which keep their last observation in the info (SAME_STEP)."""
+        final = {"final_obs": self._observations.copy(), "_final_obs": ended.copy(),
+                 "final_info": {**info, **{f"_{name}": ended.copy() for name in info}}, "_final_info": ended.copy()}  # fmt: skip
+        self._start(ended)
+        return {**info, **final}
+
+    # checkpoints
+
+    def get_state(self) -> dict[str, Any]:
+        """Return all that decides what comes next, as copies; `set_state` goes on from it bit for bit."""
+        return deepcopy({
+            "physics": {name: getattr(self.state, name) for name in PHYSICAL_STATE},
+            "episodes": {name: getattr(self, name) for name in _EPISODE_STATE},
+            "poses": [tuple(self.pose), tuple(self._before)],
+            "generators": None if self._generators is None else [g.bit_generator.state for g in self._generators],
+        })  # fmt: skip
+
+    def set_state(self, saved: dict[str, Any]) -> None:
+        """Go on from what `get_state` returned, here or in another process.
+
+        Raises
+        ------
+        ValueError
+            If it was taken from a batch of another size or body.
+        """
+        if saved["physics"]["x"].shape != self.state.x.shape:
+            raise ValueError(f"the state is of {saved['physics']['x'].shape[0]} environments with "
+                             f"{saved['physics']['x'].shape[2]} slots; here are {self.num_envs} with "
+                             f"{self.state.x.shape[2]}")  # fmt: skip
+        for name, value in saved["physics"].items():
+            getattr(self.state, name)[...] = value
+        for name, value in saved["episodes"].items():
+            setattr(self, name, value.copy())
+        for pose, values in zip((self.pose, self._before), saved["poses"], strict=True):
+            for mine, value in zip(pose, values, strict=True):
+                mine[...] = value
+        if saved["generators"] is not None:
+            self._generators = [np.random.Generator(np.random.PCG64(0)) for _ in range(self.num_envs)]
+            for generator, state in zip(self._generators, saved["generators"], strict=True):
+                generator.bit_generator.state = state
+
+    # for those who look on
+
+    @property
+    def target(self) -> Array | None:
+        """The targets' positions in the lab [m], (B, 3), or None where the task has none."""
+        return self.task.target(self.goal)
+
+
+_EPISODE_STATE = ("goal", "elapsed", "activations", "levels", "_readings", "_observations", "_distance", "_ended")
+
+
+@functools.lru_cache(maxsize=8)
+def _pool(process: int, n_threads: int) -> ThreadPoolExecutor:
+    """Return this process's threads; a forked child makes its own, for its parent's did not come along."""
+    return ThreadPoolExecutor(max_workers=max(1, n_threads), thread_name_prefix="elastica_gym")
+
+
+def _merge_weights(task: Task, changed: dict[str, float]) -> dict[str, float]:
+    unknown = set(changed) - set(task.weights)
+    if unknown:
+        raise ValueError(f"weights has no term {sorted(unknown)[0]!r}; {task.name} has {', '.join(task.weights)}")
+    for name, value in changed.items():
+        require_not_negative(f"weights[{name!r}]", abs(value))
+    return {**task.weights, **changed}
+
+
+def _checked_mask(mask: Array, num_envs: int) -> Array:
+    values = np.asarray(mask)
+    if values.shape != (num_envs,) or values.dtype != np.bool_:
+        raise ValueError(f"reset_mask must be {num_envs} booleans, not {values.dtype} of shape {values.shape}")
+    return values
+
+
+def _reasons(sound: Array, terminated: Array, truncated: Array) -> Array:
+    reasons = np.full(sound.shape, "", dtype=object)
+    reasons[truncated] = "time_limit"
+    reasons[terminated] = "success"
+    reasons[~sound] = "diverged"
+    return reasons

@@ -1,0 +1,33 @@
+"""Ids: each is a task with keyword arguments."""
+
+from typing import Any
+
+import gymnasium
+
+from . import snake_forward, snake_reach
+from .batch import BatchEnv
+from .single import SingleEnv
+from .task import Task
+
+NAMESPACE = "elastica_gym"
+TASKS: dict[str, Task] = {task.name: task for task in (snake_forward.TASK, snake_reach.TASK)}
+IDS = tuple(f"{NAMESPACE}/{name}-v0" for name in TASKS)
+
+
+def make_single(*, task: str, **kwargs: Any) -> SingleEnv:
+    """Make the single environment of a task; what ``gymnasium.make`` calls."""
+    return SingleEnv(TASKS[task], **kwargs)
+
+
+def make_batch(*, task: str, num_envs: int = 1, **kwargs: Any) -> BatchEnv:
+    """Make the batched environment of a task; what ``gymnasium.make_vec`` calls."""
+    return BatchEnv(TASKS[task], num_envs, **kwargs)
+
+
+def register_all() -> None:
+    """Register every id. No ``max_episode_steps``: the batch truncates, and make would add a second limit."""
+    for name in TASKS:
+        gymnasium.register(
+            f"{NAMESPACE}/{name}-v0", entry_point=f"{__name__}:make_single", vector_entry_point=f"{__name__}:make_batch",
+            kwargs={"task": name},
+        )  # fmt: skip

@@ -1,0 +1,66 @@
+"""One animal as a gymnasium.Env: a thin view of a batch of one."""
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+
+from ..cosserat.model import Array
+from .batch import BatchEnv
+from .task import Task
+
+
+class SingleEnv(gymnasium.Env):
+    """One animal at its task. Made by ``gymnasium.make("elastica_gym/<Name>-v0")``.
+
+    Parameters
+    ----------
+    task : Task
+    render_mode : None
+        There is none; record a rollout to look at it.
+    **kwargs
+        Arguments of `BatchEnv`.
+
+    Attributes
+    ----------
+    batch : BatchEnv
+        The batch of one.
+    """
+
+    def __init__(self, task: Task, *, render_mode: None = None, **kwargs: Any) -> None:
+        self.batch = BatchEnv(task, 1, render_mode=render_mode, autoreset_mode=AutoresetMode.DISABLED, **kwargs)
+        self.metadata = {"render_modes": [], "render_fps": self.batch.metadata["render_fps"]}
+        self.observation_space = self.batch.single_observation_space
+        self.action_space = self.batch.single_action_space
+        self.render_mode = render_mode
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Start a new episode; see `BatchEnv.reset`."""
+        observations, info = self.batch.reset(seed=seed)
+        assert self.batch._generators is not None
+        self._np_random = self.batch._generators[0]
+        return observations[0], info
+
+    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+        """Advance by one control step; see `BatchEnv.step`."""
+        values = np.asarray(action)
+        if values.shape != self.action_space.shape:
+            raise ValueError(f"action must have shape {self.action_space.shape}, not {values.shape}")
+        observations, rewards, terminated, truncated, info = self.batch.step(values[None])
+        return (observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]),
+                {name: value[0] for name, value in info.items()})  # fmt: skip
+
+    def close(self) -> None:
+        """Close the batch."""
+        self.batch.close()
+
+    def get_state(self) -> dict[str, Any]:
+        """Return all that decides what comes next; see `BatchEnv.get_state`."""
+        return self.batch.get_state()
+
+    def set_state(self, saved: dict[str, Any]) -> None:
+        """Go on from what `get_state` returned."""
+        self.batch.set_state(saved)
+        if self.batch._generators is not None:
+            self._np_random = self.batch._generators[0]

@@ -1,0 +1,95 @@
+"""What a task is: a goal, what is seen of it, and what is rewarded. Small pure functions over a batch."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..bodies.body import Body, Pose
+from ..cosserat.model import Array
+
+
+class Situation(NamedTuple):
+    """Where a batch of B environments stands after a control step."""
+
+    pose: Pose
+    """Where the animals are now"""
+    before: Pose
+    """Where they were a control step ago"""
+    goal: Array
+    """What the task drew at reset, (B, G)"""
+    activations: Array
+    """Activations commanded in this step, (B, 42)"""
+    time_left: Array
+    """Part of the episode that is left, 1 at its start and 0 at its end, (B,)"""
+    control_dt: float
+    """Duration of a control step [s]"""
+    body: Body
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """A task for a body: with keyword arguments, it makes an environment.
+
+    Attributes
+    ----------
+    name : str
+    make_body : callable
+        Returns the `Body`; called with the environment's ``body_kwargs``.
+    duration : float
+        Simulated time of an episode [s].
+    draw_goal : callable
+        From a generator and the situation of one environment at reset, its goal, (G,).
+    goal_names : tuple of str
+        Names of what ``see_goal`` returns.
+    goal_bounds : tuple of float
+        Largest absolute value of each.
+    see_goal : callable
+        From a situation, what the animal sees of its goal in the frame of its heading, (B, g).
+    reward_terms : dict of str to callable
+        From a situation, each term before its weight, (B,).
+    weights : dict of str to float
+        Weight of each term.
+    distance : callable
+        From a situation, how far the animal has come [m], (B,).
+    succeeds : callable
+        From a situation, whether the task is done, (B,) bool.
+    ends_on_success : bool
+        Whether an episode ends with success.
+    target : callable
+        From goals, the target's position in the lab [m], (B, 3), or None where there is none to show.
+    make_scripted : callable
+        From an environment, a scripted policy: a callable without arguments that returns actions.
+    """
+
+    name: str
+    make_body: Callable[..., Body]
+    duration: float
+    draw_goal: Callable[[np.random.Generator, Situation], Array]
+    goal_names: tuple[str, ...]
+    goal_bounds: tuple[float, ...]
+    see_goal: Callable[[Situation], Array]
+    reward_terms: dict[str, Callable[[Situation], Array]]
+    weights: dict[str, float]
+    distance: Callable[[Situation], Array]
+    succeeds: Callable[[Situation], Array]
+    ends_on_success: bool
+    target: Callable[[Array], Array | None]
+    make_scripted: Callable[[Any], Callable[[], Array]]
+
+
+def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:
+    """Return the forward and right component of horizontal vectors (x, z), in the frame of the heading, (B,) each."""
+    hx, hz = situation.pose.heading[:, 0], situation.pose.heading[:, 1]
+    return x * hx + z * hz, z * hx - x * hz
+
+
+def effort(situation: Situation) -> Array:
+    """Return minus the mean square activation times the duration of the step [s], (B,)."""
+    a = situation.activations
+    # column by column: the order of summation must not depend on the size of the batch
+    total = np.zeros(len(a))
+    for column in a.T:
+        total += column * column
+    return -total / a.shape[1] * situation.control_dt

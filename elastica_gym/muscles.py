@@ -1,0 +1,115 @@
+"""Muscles: 42 activations in [-1, 1] in, couples along the body out.
+
+The body has two *arms* (a snake's front and rear half). In each of three directions, about the
+normal, the binormal and the tangent, an arm carries a hierarchy of Gaussian basis functions: level
+j has 2^j of them, so 1 + 2 + 4 = 7. Two arms, three directions and seven functions make the 42
+activations, in the order direction, arm, function: the top level first, and within a level from the
+arm's beginning to its end.
+
+A couple acts equally and oppositely on the two elements it joins, so muscles never push or spin the
+animal as a whole; they act on the ground only through its shape.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from .cosserat import Rod
+from .cosserat.model import Array
+
+DIRECTIONS = ("normal", "binormal", "tangent")
+LEVELS = (1, 2, 4)
+N_FUNCTIONS = sum(LEVELS)
+N_ARMS = 2
+N_ACTIVATIONS = len(DIRECTIONS) * N_ARMS * N_FUNCTIONS
+
+WIDTHS = {"normal": (0.40, 0.25, 0.15), "binormal": (0.40, 0.25, 0.15), "tangent": (0.40, 0.25, 0.15)}
+"""Width of the Gaussians of each level, for an arm of length 1"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Muscles:
+    """How strong an animal's muscles are, where its arms lie and how fast they act.
+
+    Attributes
+    ----------
+    magnitudes : dict of str to tuple of float
+        Couple at full activation of each level, by direction [N m].
+    arms : tuple of tuple of float
+        Begin and end of each arm as parts of the rod's length; a begin beyond the end runs backwards.
+    activation_time : float
+        Time constant with which a muscle's activation follows the commanded one [s].
+    """
+
+    magnitudes: dict[str, tuple[float, float, float]]
+    arms: tuple[tuple[float, float], tuple[float, float]]
+    activation_time: float
+
+
+def basis(s: Array, direction: str = "normal") -> Array:
+    """Return the seven Gaussians of an arm, exp(-((s - c)/width)^2), (7, m).
+
+    Parameters
+    ----------
+    s : Array
+        Places along the arm, 0 at its beginning and 1 at its end, (m,). Beyond, the functions are 0.
+    direction : str
+        One of `DIRECTIONS`.
+    """
+    rows = [
+        np.exp(-(((s - (i + 0.5) / count) / width) ** 2))
+        for count, width in zip(LEVELS, WIDTHS[direction], strict=True)
+        for i in range(count)
+    ]
+    return np.array(rows) * ((s >= 0.0) & (s <= 1.0))
+
+
+def couple_matrix(muscles: Muscles, rod: Rod) -> Array:
+    """Return the couple at each Voronoi point that each activation causes at 1 [N m], (42, 3, n - 1).
+
+    The couple of the direction normal, binormal and tangent is the component along d1, d2 and d3.
+    """
+    ends = np.cumsum(rod.rest_length)[:-1] / rod.rest_length.sum()
+    matrix = np.zeros((len(DIRECTIONS), N_ARMS, N_FUNCTIONS, 3, rod.n_elements - 1))
+    for d, direction in enumerate(DIRECTIONS):
+        strength = np.repeat(muscles.magnitudes[direction], LEVELS)
+        for a, (begin, end) in enumerate(muscles.arms):
+            matrix[d, a, :, d] = strength[:, None] * basis((ends - begin) / (end - begin), direction)
+    return matrix.reshape(N_ACTIVATIONS, 3, rod.n_elements - 1)
+
+
+def activation_names(arms: tuple[str, str]) -> tuple[str, ...]:
+    """Return the name of each activation, as ``normal/front/1.0``: direction, arm, level and place."""
+    return tuple(
+        f"{direction}/{arm}/{level}.{i}"
+        for direction in DIRECTIONS
+        for arm in arms
+        for level, count in enumerate(LEVELS)
+        for i in range(count)
+    )
+
+
+def activations_for(couple: Array, matrix: Array, direction: str = "normal") -> Array:
+    """Return the activations in [-1, 1] whose couples come nearest to wanted profiles.
+
+    Parameters
+    ----------
+    couple : Array
+        Wanted couples about one direction at Voronoi points [N m], (m, n - 1).
+    matrix : Array
+        What `couple_matrix` returns, (42, 3, n - 1).
+    direction : str
+        One of `DIRECTIONS`; the activations of the others are zero.
+
+    Returns
+    -------
+    Array
+        (m, 42), nearest in the sense of least squares within the bounds.
+    """
+    d = DIRECTIONS.index(direction)
+    chosen = np.arange(N_ACTIVATIONS).reshape(len(DIRECTIONS), -1)[d]
+    activations = np.zeros((len(couple), N_ACTIVATIONS))
+    for row, wanted in zip(activations, couple, strict=True):
+        row[chosen] = lsq_linear(matrix[chosen, d].T, wanted, bounds=(-1.0, 1.0)).x
+    return activations
