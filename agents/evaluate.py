@@ -161,7 +161,7 @@ def print_table(title: str, result: Evaluation) -> None:
 
 def _rows(summary: dict[str, Any]) -> Iterator[tuple[str, float, float]]:
     yield "return", summary["return_mean"], summary["return_ci95"]
-    yield "distance [m]", summary["distance_mean"], summary["distance_ci95"]
+    yield "distance (m)", summary["distance_mean"], summary["distance_ci95"]
     for name, mean in summary["terms"].items():
         yield f"reward: {name}", mean, summary["terms_ci95"][name]
 
@@ -181,7 +181,7 @@ class EvaluateArguments:
     run: Path | None = None
     """Folder of a run of agents.train."""
     policy: str | None = None
-    """Instead of a run: zero, random or scripted."""
+    """Instead of a run: zero, random, scripted or seed_gait."""
     env: str | None = None
     """Environment id; by default the one that the run was trained on."""
     episodes: int = 50
@@ -225,7 +225,7 @@ def main() -> None:
 
 def _policy_and_environment(arguments: EvaluateArguments) -> "tuple[Policy, str, dict[str, Any]]":
     if (arguments.run is None) == (arguments.policy is None):
-        raise BadInputError("Give either --run DIR or --policy zero|random|scripted.")
+        raise BadInputError("Give either --run DIR or --policy zero|random|scripted|seed_gait.")
     if arguments.env is not None:
         choose("environment", arguments.env, environment_ids())
     # torch takes seconds to import: not before the arguments are known to be good

@@ -1,7 +1,7 @@
 """Policies behind one interface: zero, random, scripted, and trained runs."""
 
 import pickle
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -10,8 +10,9 @@ import yaml
 
 from agents.checks import BadInputError, choose
 from agents.hyperparameters import algorithm_class
+from elastica_gym.envs.gaits import seed_gait
 
-BASELINES = ("zero", "random", "scripted")
+BASELINES = ("zero", "random", "scripted", "seed_gait")
 
 ROWS_PER_FORWARD = 64
 """A network is always evaluated on this many rows at once: matrix products of other sizes round differently, and what
@@ -53,14 +54,26 @@ class RandomPolicy:
 
 
 class ScriptedPolicy:
-    """The task's own scripted policy, which may look at the whole state."""
+    """A script, which may look at the whole state.
+
+    Parameters
+    ----------
+    make_script
+        From a batch, a function without arguments that returns its actions (n, 42); by default the task's own.
+    """
+
+    def __init__(self, make_script: Callable[[Any], Callable[[], np.ndarray]] | None = None):
+        self._make_script = make_script
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Nothing to begin: the script reads the time from the state."""
+        """Forget the batch that the script was made for."""
+        self._script: Callable[[], np.ndarray] | None = None
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
         """Return what the script does."""
-        return np.asarray(batch.task.scripted_policy(batch), np.float32)
+        if self._script is None:
+            self._script = (self._make_script or batch.task.make_scripted)(batch)
+        return self._script().astype(np.float32)
 
 
 class TrainedPolicy:
@@ -93,9 +106,15 @@ class TrainedPolicy:
 
 
 def baseline(name: str) -> Policy:
-    """Return the policy called `name`: zero, random or scripted."""
-    made = {"zero": ZeroPolicy, "random": RandomPolicy, "scripted": ScriptedPolicy}
-    return made[choose("policy", name, BASELINES)]()
+    """Return the policy called `name`: zero, random, scripted, or seed_gait, the snake's published gait."""
+    match choose("policy", name, BASELINES):
+        case "zero":
+            return ZeroPolicy()
+        case "random":
+            return RandomPolicy()
+        case "scripted":
+            return ScriptedPolicy()
+    return ScriptedPolicy(seed_gait)
 
 
 def load_run(run: Path) -> tuple[TrainedPolicy, dict[str, Any]]:

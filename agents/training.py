@@ -235,7 +235,6 @@ class Training:
         """Append what this iteration came to to metrics.csv and to the display."""
         episodes = self.model.ep_info_buffer
         means = {key: float(safe_mean([e[key] for e in episodes])) for key in ("r", "l", "distance")}
-        terms = [f"reward_{term}" for term in self.adapter.batch.task.reward_weights]
         row = {
             "steps": self.model.num_timesteps,
             "seconds": self.budget.seconds,
@@ -244,7 +243,7 @@ class Training:
             "length": means["l"],
             "distance": means["distance"],
             "success": float(safe_mean(self.model.ep_success_buffer)),
-            **{term: float(safe_mean([e[term] for e in episodes])) for term in terms},
+            **{term: float(safe_mean([e[term] for e in episodes])) for term in self.adapter.term_keys},
             **{key.removeprefix("train/"): _plain(v) for key, v in self.model.logger.name_to_value.items()},
         }
         self.model.logger.dump(self.model.num_timesteps)

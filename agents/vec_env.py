@@ -30,6 +30,8 @@ class BatchVecEnv(VecEnv):
     ----------
     batch_infos : dict
         What the last step reported of every environment, as arrays of shape (n,).
+    term_keys : tuple of str
+        ``reward_<term>`` of every reward term.
 
     Notes
     -----
@@ -49,12 +51,10 @@ class BatchVecEnv(VecEnv):
         self.batch_infos: dict[str, Any] = {}
         self._actions: np.ndarray = np.zeros((self.num_envs, *self.action_space.shape), np.float32)  # type: ignore[misc]
         self._running: dict[str, Any] = {"TimeLimit.truncated": False}
-        self._sums = {key: np.zeros(self.num_envs) for key in ("r", *self._term_keys())}
+        self.term_keys = tuple(f"reward_{term}" for term in batch.weights)
+        self._sums = {key: np.zeros(self.num_envs) for key in ("r", *self.term_keys)}
         self._lengths = np.zeros(self.num_envs, np.int64)
         self._started = time.time()
-
-    def _term_keys(self) -> list[str]:
-        return [f"reward_{term}" for term in self.batch.task.reward_weights]
 
     def reset(self) -> np.ndarray:
         """Reset every environment, with the seeds given to ``seed`` if there are any, and return (n, d) float32."""
@@ -95,7 +95,7 @@ class BatchVecEnv(VecEnv):
         last = infos["final_info"] if ended.size else infos
         self.batch_infos = last
         self._sums["r"] += rewards
-        for key in self._term_keys():
+        for key in self.term_keys:
             self._sums[key] += np.where(dones, last[key], infos[key]) if ended.size else infos[key]
         self._lengths += 1
         env_infos = [self._running] * self.num_envs
