@@ -58,22 +58,19 @@ class ScriptedPolicy:
 
     Parameters
     ----------
-    make_script
-        From a batch, a function without arguments that returns its actions (n, 42); by default the task's own.
+    script
+        From a batch, its actions (n, 42); by default the task's own.
     """
 
-    def __init__(self, make_script: Callable[[Any], Callable[[], np.ndarray]] | None = None):
-        self._make_script = make_script
+    def __init__(self, script: Callable[[Any], np.ndarray] | None = None):
+        self._script = script
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Forget the batch that the script was made for."""
-        self._script: Callable[[], np.ndarray] | None = None
+        """Nothing to begin: a script looks at the clock of its environment."""
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
         """Return what the script does."""
-        if self._script is None:
-            self._script = (self._make_script or batch.task.make_scripted)(batch)
-        return self._script().astype(np.float32)
+        return (self._script or batch.task.scripted_policy)(batch).astype(np.float32)
 
 
 class TrainedPolicy:

@@ -37,7 +37,8 @@ class Senses(NamedTuple):
     """Weight of the body: with the patches' share of it, the unit of contact [N]"""
 
 
-@dataclass(frozen=True, kw_only=True)
+# compared by identity: its functions cache what they derive from it
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
     """An animal in its surroundings.
 

@@ -365,12 +365,12 @@ def _pool(process: int, n_threads: int) -> ThreadPoolExecutor:
 
 
 def _merge_weights(task: Task, changed: dict[str, float]) -> dict[str, float]:
-    unknown = set(changed) - set(task.weights)
+    unknown = set(changed) - set(task.reward_weights)
     if unknown:
-        raise ValueError(f"weights has no term {sorted(unknown)[0]!r}; {task.name} has {', '.join(task.weights)}")
+        raise ValueError(f"weights has no term {sorted(unknown)[0]!r}; {task.name} has {', '.join(task.reward_weights)}")
     for name, value in changed.items():
         require_not_negative(f"weights[{name!r}]", abs(value))
-    return {**task.weights, **changed}
+    return {**task.reward_weights, **changed}
 
 
 def _checked_mask(mask: Array, num_envs: int) -> Array:

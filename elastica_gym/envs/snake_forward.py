@@ -1,11 +1,16 @@
 """SnakeForward: go as far as you can along your initial heading in 10 s."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..bodies import snake
 from ..cosserat.model import Array
 from .gaits import snake_crawl
 from .task import Situation, Task, effort, in_heading_frame
+
+if TYPE_CHECKING:
+    from .batch import BatchEnv
 
 FAR = 0.35
 """Distance that counts as success: a body length [m]"""
@@ -41,10 +46,19 @@ def succeeds(situation: Situation) -> Array:
     return distance(situation) >= FAR
 
 
+def no_target(goal: Array) -> None:
+    """Return None: there is a direction, but no place to show."""
+
+
 def direction_of_goal(situation: Situation) -> Array:
     """Return the direction to go as an angle from the heading, positive to the right [rad], (B,)."""
     seen = see_goal(situation)
     return np.arctan2(seen[:, 1], seen[:, 0])
+
+
+def scripted_policy(env: "BatchEnv") -> Array:
+    """Return the actions of a crawl that turns towards the goal, (B, 42)."""
+    return snake_crawl(env, direction_of_goal(env.situation()))
 
 
 TASK = Task(
@@ -56,10 +70,10 @@ TASK = Task(
     goal_bounds=(1.0, 1.0),
     see_goal=see_goal,
     reward_terms={"forward": forward, "effort": effort},
-    weights={"forward": 10.0, "effort": 0.1, "diverged": -10.0},
+    reward_weights={"forward": 10.0, "effort": 0.1, "diverged": -10.0},
     distance=distance,
     succeeds=succeeds,
     ends_on_success=False,
-    target=lambda goal: None,
-    make_scripted=lambda env: snake_crawl(env, direction_of_goal),
+    target=no_target,
+    scripted_policy=scripted_policy,
 )

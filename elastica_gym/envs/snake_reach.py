@@ -1,11 +1,16 @@
 """SnakeReach: bring the head to a target around you within 20 s."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..bodies import snake
 from ..cosserat.model import Array
 from .gaits import snake_crawl
 from .task import Situation, Task, effort, in_heading_frame
+
+if TYPE_CHECKING:
+    from .batch import BatchEnv
 
 NEAR = 0.05
 """Distance between head and target that counts as success, in body lengths"""
@@ -64,11 +69,21 @@ def distance(situation: Situation) -> Array:
     return -gap(situation) * situation.body.senses.length
 
 
+def target(goal: Array) -> Array:
+    """Return the targets' positions on the ground [m], (B, 3)."""
+    return np.stack([goal[:, 0], np.zeros(len(goal)), goal[:, 1]], axis=1)
+
+
 def direction_of_goal(situation: Situation) -> Array:
     """Return the direction from centre of mass to target as an angle from the heading [rad], (B,)."""
     s = situation
     forward, right = in_heading_frame(s, s.goal[:, 0] - s.pose.centre[:, 0], s.goal[:, 1] - s.pose.centre[:, 2])
     return np.arctan2(right, forward)
+
+
+def scripted_policy(env: "BatchEnv") -> Array:
+    """Return the actions of a crawl that turns towards the goal, (B, 42)."""
+    return snake_crawl(env, direction_of_goal(env.situation()))
 
 
 TASK = Task(
@@ -80,10 +95,10 @@ TASK = Task(
     goal_bounds=(4.0, 4.0, 4.0),
     see_goal=see_goal,
     reward_terms={"approach": approach, "success": success, "early": early, "effort": effort},
-    weights={"approach": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "diverged": -10.0},
+    reward_weights={"approach": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "diverged": -10.0},
     distance=distance,
     succeeds=succeeds,
     ends_on_success=True,
-    target=lambda goal: np.stack([goal[:, 0], np.zeros(len(goal)), goal[:, 1]], axis=1),
-    make_scripted=lambda env: snake_crawl(env, direction_of_goal),
+    target=target,
+    scripted_policy=scripted_policy,
 )

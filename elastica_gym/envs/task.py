@@ -49,7 +49,7 @@ class Task:
         From a situation, what the animal sees of its goal in the frame of its heading, (B, g).
     reward_terms : dict of str to callable
         From a situation, each term before its weight, (B,).
-    weights : dict of str to float
+    reward_weights : dict of str to float
         Weight of each term.
     distance : callable
         From a situation, how far the animal has come [m], (B,).
@@ -59,8 +59,8 @@ class Task:
         Whether an episode ends with success.
     target : callable
         From goals, the target's position in the lab [m], (B, 3), or None where there is none to show.
-    make_scripted : callable
-        From an environment, a scripted policy: a callable without arguments that returns actions.
+    scripted_policy : callable
+        From a `BatchEnv`, the actions of a policy written by hand, (B, 42).
     """
 
     name: str
@@ -71,12 +71,12 @@ class Task:
     goal_bounds: tuple[float, ...]
     see_goal: Callable[[Situation], Array]
     reward_terms: dict[str, Callable[[Situation], Array]]
-    weights: dict[str, float]
+    reward_weights: dict[str, float]
     distance: Callable[[Situation], Array]
     succeeds: Callable[[Situation], Array]
     ends_on_success: bool
     target: Callable[[Array], Array | None]
-    make_scripted: Callable[[Any], Callable[[], Array]]
+    scripted_policy: Callable[[Any], Array]
 
 
 def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:
