@@ -4,11 +4,11 @@ Nothing here is imported by ``import elastica_gym``, and rerun and MuJoCo only w
 ``pip install 'elastica-gym[viz]'``.
 """
 
-#from .frames import Figure, Stage, render_frames, write_video
+from .frames import Camera, Figure, Stage, framing, render_frames, write_video
 from .recording import read_positions, record_rollout, write_recording
 from .rollout import Policy, Recorder, Rollout, run_rollout
 
 __all__ = [
-    "Figure", "Policy", "Recorder", "Rollout", "Stage", "read_positions", "record_rollout", "render_frames",
-    "run_rollout", "write_recording", "write_video",
+    "Camera", "Figure", "Policy", "Recorder", "Rollout", "Stage", "framing", "read_positions", "record_rollout",
+    "render_frames", "run_rollout", "write_recording", "write_video",
 ]  # fmt: skip

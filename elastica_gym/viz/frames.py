@@ -1,0 +1,342 @@
+"""Pictures and videos drawn offscreen by MuJoCo's renderer, which needs no window and no GPU.
+
+MuJoCo draws through EGL or OSMesa, which on Linux are packages of the system and not of Python:
+``apt-get install libegl1 libgl1-mesa-dri``, or ``libosmesa6``. The environment variable MUJOCO_GL
+(``egl`` or ``osmesa``) chooses; where it is not set and there is no display, what is found is taken.
+"""
+
+import ctypes.util
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType, TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cosserat.model import Array
+from .rollout import first_nodes
+
+Image = NDArray[np.uint8]
+Color = tuple[float, float, float]
+"""Red, green and blue from 0 to 1"""
+
+BODY: Color = (0.13, 0.47, 0.44)
+HEAD: Color = (0.92, 0.50, 0.15)
+TARGET: Color = (0.84, 0.27, 0.25)
+
+SUPERSAMPLING = 2
+"""Pictures are drawn this many times larger and averaged down"""
+
+FIGURES = 12_000
+"""Largest number of bodies, such as capsules, in one picture"""
+
+# the lab's (x, y, z) with y up are (y, z, x) in a world with z up, a rotation; lengths are body lengths
+SCENE = """
+<mujoco>
+  <statistic extent="1" center="0 0 0"/>
+  <visual>
+    <global offwidth="{width}" offheight="{height}" fovy="32"/>
+    <quality shadowsize="4096" offsamples="0"/>
+    <headlight ambient="0.36 0.36 0.36" diffuse="0.17 0.17 0.17" specular="0 0 0"/>
+    <map znear="0.02" zfar="60" fogstart="6" fogend="18" shadowclip="3"/>
+    <rgba fog="0.96 0.965 0.955 1" haze="0.96 0.965 0.955 1"/>
+  </visual>
+  <asset>
+    <texture type="skybox" builtin="flat" rgb1="0.96 0.965 0.955" width="8" height="48"/>
+    <texture name="grid" type="2d" builtin="flat" rgb1="0.93 0.94 0.925" mark="edge" markrgb="0.79 0.81 0.78"
+      width="512" height="512"/>
+    <material name="ground" texture="grid" texrepeat="4 4" texuniform="true" specular="0" shininess="0"/>
+  </asset>
+  <worldbody>
+    <light directional="true" pos="-1 -1 2" dir="0.35 0.35 -1" diffuse="0.55 0.55 0.53" specular="0.25 0.25 0.25"/>
+    <geom type="plane" size="0 0 0.1" material="ground"/>
+  </worldbody>
+</mujoco>
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Figure:
+    """A body to draw.
+
+    Attributes
+    ----------
+    begin, end : Array
+        Where its elements begin and end [m], lab frame with y up, (M, 3) each; equal ones are spheres.
+    radii : Array
+        Radii of its elements [m], (M,) or a number.
+    rgba : Array
+        Colours from 0 to 1, (M, 4) or one for all.
+    """
+
+    begin: Array
+    end: Array
+    radii: Any
+    rgba: Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class Camera:
+    """Where the picture is taken from.
+
+    Attributes
+    ----------
+    look_at : Array
+        The point in the middle of the picture [m], (3,).
+    distance : float
+        How far the camera is from it [m].
+    azimuth : float
+        Direction of view about the vertical; 0 looks along -z, with +x to the right [deg].
+    elevation : float
+        Height of the view; -90 looks straight down [deg].
+    """
+
+    look_at: Any
+    distance: float
+    azimuth: float = 0.0
+    elevation: float = -50.0
+
+
+class Stage:
+    """Ground, light and a renderer, for any number of pictures of one size.
+
+    Use it in a ``with`` statement, or call `close`.
+
+    Parameters
+    ----------
+    width, height : int
+        Size of the pictures [pixels].
+    unit : float
+        Length of the animal [m]: the ground's grid has four lines for each.
+
+    Raises
+    ------
+    ImportError
+        If MuJoCo is not installed.
+    RuntimeError
+        If it finds nothing to draw with.
+    """
+
+    def __init__(self, *, width: int = 960, height: int = 540, unit: float = 1.0) -> None:
+        for name, value in (("width", width), ("height", height), ("unit", unit)):
+            if not value > 0:
+                raise ValueError(f"{name} must be positive, not {value}")
+        self._mujoco = _mujoco()
+        large = {"width": SUPERSAMPLING * width, "height": SUPERSAMPLING * height}
+        self._model = self._mujoco.MjModel.from_xml_string(SCENE.format(**large))
+        self._data = self._mujoco.MjData(self._model)
+        self._mujoco.mj_forward(self._model, self._data)
+        self._unit = unit
+        try:
+            self._renderer = self._mujoco.Renderer(self._model, max_geom=FIGURES, **large)
+        except Exception as error:
+            raise RuntimeError(_no_gl(str(error))) from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free what the renderer holds."""
+        self._renderer.close()
+
+    def draw(self, figures: list[Figure], camera: Camera) -> Image:
+        """Return a picture of bodies on the ground, (height, width, 3) uint8."""
+        mujoco, scene = self._mujoco, self._renderer.scene
+        view = mujoco.MjvCamera()
+        view.type = mujoco.mjtCamera.mjCAMERA_FREE
+        view.lookat[:] = self._world(np.asarray(camera.look_at))
+        view.distance, view.azimuth, view.elevation = camera.distance / self._unit, camera.azimuth, camera.elevation
+        view.azimuth += 180.0
+        self._renderer.update_scene(self._data, view)
+        for figure in figures:
+            self._add(scene, figure)
+        large = self._renderer.render()
+        height, width, n = large.shape[0] // SUPERSAMPLING, large.shape[1] // SUPERSAMPLING, SUPERSAMPLING
+        small = large.reshape(height, n, width, n, 3).mean(axis=(1, 3))
+        return np.round(small).astype(np.uint8)
+
+    def _world(self, points: Array) -> Array:
+        return np.asarray(points, dtype=float)[..., [2, 0, 1]] / self._unit
+
+    def _add(self, scene: Any, figure: Figure) -> None:
+        mujoco = self._mujoco
+        begin, end = self._world(figure.begin), self._world(figure.end)
+        radii = np.broadcast_to(np.asarray(figure.radii, dtype=float) / self._unit, len(begin))
+        rgba = np.broadcast_to(np.asarray(figure.rgba, dtype=np.float32), (len(begin), 4))
+        if scene.ngeom + len(begin) > scene.maxgeom:
+            raise ValueError(f"figures must have at most {scene.maxgeom} elements together")
+        for k in range(len(begin)):
+            geom = scene.geoms[scene.ngeom]
+            is_sphere = np.array_equal(begin[k], end[k])
+            kind = mujoco.mjtGeom.mjGEOM_SPHERE if is_sphere else mujoco.mjtGeom.mjGEOM_CAPSULE
+            mujoco.mjv_initGeom(geom, kind, np.full(3, radii[k]), begin[k], np.eye(3).ravel(), rgba[k])
+            geom.specular, geom.shininess = 0.3, 0.4
+            if not is_sphere:
+                mujoco.mjv_connector(geom, kind, radii[k], begin[k], end[k])
+            scene.ngeom += 1
+
+
+def animal(nodes: Array, radii: Array, elements_per_rod: tuple[int, ...] | None = None, *,
+           color: Color = BODY, head: Color | None = HEAD) -> Figure:  # fmt: skip
+    """Return the figure of an animal at one moment.
+
+    Parameters
+    ----------
+    nodes : Array
+        Positions of its nodes, rod after rod [m], (N, 3).
+    radii : Array
+        Radii of its elements [m], (M,).
+    elements_per_rod : tuple of int, optional
+        Number of elements of each rod; all in one if omitted.
+    color : tuple of float
+        Red, green and blue from 0 to 1, pale at the rear and full at the front.
+    head : tuple of float, optional
+        Colour of the last node, or None for no head.
+    """
+    counts = elements_per_rod or (len(nodes) - 1,)
+    if sum(counts) != len(radii) or sum(counts) + len(counts) != len(nodes):
+        raise ValueError(f"{len(nodes)} nodes and {len(radii)} radii do not make rods of {counts} elements")
+    first = first_nodes(counts)
+    tint = np.concatenate([np.linspace(0.35, 0.0, n) for n in counts])[:, None]
+    rgba = np.ones((len(radii), 4))
+    rgba[:, :3] = np.asarray(color) * (1.0 - tint) + tint
+    begin, end, thick = nodes[first], nodes[first + 1], radii
+    if head is not None:
+        begin, end = np.concatenate([begin, nodes[-1:]]), np.concatenate([end, nodes[-1:]])
+        thick, rgba = np.append(radii, 1.25 * radii[-1]), np.vstack([rgba, (*head, 1.0)])
+    return Figure(begin=begin, end=end, radii=thick, rgba=rgba)
+
+
+def line(points: Array, radius: float, color: Color = HEAD) -> Figure:
+    """Return the figure of a line through points (K, 3), of a radius [m]."""
+    return Figure(begin=points[:-1], end=points[1:], radii=radius, rgba=(*color, 1.0))
+
+
+def ball(centre: Array, radius: float, color: Color = TARGET, alpha: float = 0.6) -> Figure:
+    """Return the figure of a ball about a point (3,), of a radius [m]."""
+    points = np.asarray(centre, dtype=float)[None]
+    return Figure(begin=points, end=points, radii=radius, rgba=(*color, alpha))
+
+
+def render_frames(positions: Array, radii: Array, *, elements_per_rod: tuple[int, ...] | None = None,
+                  target: Array | None = None, target_radius: float | None = None, trail: bool = True,
+                  camera: Camera | None = None, width: int = 960, height: int = 540) -> Image:  # fmt: skip
+    """Draw an animal on the ground, a frame for each moment.
+
+    Parameters
+    ----------
+    positions : Array
+        Positions of its nodes [m], lab frame with y up, (T, N, 3). The head is the last one.
+    radii : Array
+        Radii of its elements [m], (T, M) or (M,).
+    elements_per_rod : tuple of int, optional
+        Number of elements of each rod; all in one if omitted.
+    target : Array, optional
+        Where the target is [m], (3,) or (T, 3).
+    target_radius : float, optional
+        Its radius, by default a twentieth of the animal's length [m].
+    trail : bool
+        Whether to draw where the head has been.
+    camera : Camera, optional
+        By default one that sees everything from the first to the last frame.
+    width, height : int
+        Size of the frames [pixels].
+
+    Returns
+    -------
+    Image
+        The frames, (T, height, width, 3) uint8.
+    """
+    positions = np.asarray(positions, dtype=float)
+    if positions.ndim != 3 or positions.shape[2] != 3 or not len(positions):
+        raise ValueError(f"positions must have the shape (T, N, 3), not {positions.shape}")
+    counts = elements_per_rod or (positions.shape[1] - 1,)
+    radii = np.broadcast_to(radii, (len(positions), sum(counts)))
+    length = float(np.linalg.norm(np.diff(positions[0], axis=0), axis=1).sum())
+    seen = positions.reshape(-1, 3)
+    if target is not None:
+        target = np.broadcast_to(np.asarray(target, dtype=float), (len(positions), 3))
+        seen = np.concatenate([seen, target])
+    camera = camera or framing(seen, width / height)
+    frames = np.empty((len(positions), height, width, 3), dtype=np.uint8)
+    with Stage(width=width, height=height, unit=length) as stage:
+        for t, nodes in enumerate(positions):
+            figures = [animal(nodes, radii[t], counts)]
+            if trail and t:
+                figures.append(line(positions[: t + 1, -1], 0.25 * radii[t, -1]))
+            if target is not None:
+                figures.append(ball(target[t], target_radius or 0.05 * length))
+            frames[t] = stage.draw(figures, camera)
+    return frames
+
+
+def framing(points: Array, aspect: float, *, azimuth: float = 0.0, elevation: float = -50.0) -> Camera:
+    """Return a camera that sees all points (K, 3), in a picture ``aspect`` times as wide as high."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    turn = np.deg2rad(azimuth)
+    across = abs((high - low)[0] * np.cos(turn)) + abs((high - low)[2] * np.sin(turn))
+    deep = abs((high - low)[0] * np.sin(turn)) + abs((high - low)[2] * np.cos(turn))
+    needed = max(across / aspect, deep * np.sin(np.deg2rad(-elevation)), 0.1 * across)
+    distance = 0.65 * needed / np.tan(np.deg2rad(16.0)) + 0.5 * deep
+    return Camera(look_at=0.5 * (low + high), distance=float(distance), azimuth=azimuth, elevation=elevation)
+
+
+def write_video(frames: Image, path: str | Path, fps: float = 20.0) -> Path:
+    """Write frames (T, height, width, 3) as an H.264 video, which needs imageio-ffmpeg.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    try:
+        import imageio_ffmpeg
+    except ImportError as error:
+        raise ImportError("videos need imageio-ffmpeg: pip install 'elastica-gym[viz]'") from error
+    path = Path(path)
+    height, width = frames.shape[1:3]
+    writer = imageio_ffmpeg.write_frames(str(path), (width, height), fps=fps, macro_block_size=2, quality=8)
+    try:
+        writer.send(None)
+        for frame in frames:
+            writer.send(np.ascontiguousarray(frame))
+    except OSError as error:
+        raise OSError(f"cannot write the video {path}: {error}") from error
+    finally:
+        writer.close()
+    if not path.is_file() or path.stat().st_size == 0:
+        raise OSError(f"cannot write the video {path}")
+    return path
+
+
+def _mujoco() -> ModuleType:
+    """Import MuJoCo, with a way to draw chosen where the user has not."""
+    is_linux = sys.platform.startswith("linux")
+    if is_linux and "mujoco" not in sys.modules and "MUJOCO_GL" not in os.environ:
+        for name, library in (("egl", "EGL"), ("osmesa", "OSMesa")):
+            if ctypes.util.find_library(library):
+                os.environ["MUJOCO_GL"] = name
+                break
+        else:
+            raise RuntimeError(_no_gl("neither EGL nor OSMesa is installed"))
+    try:
+        import mujoco
+    except ImportError as error:
+        raise ImportError("pictures need MuJoCo: pip install 'elastica-gym[viz]'") from error
+    except Exception as error:
+        raise RuntimeError(_no_gl(str(error))) from error
+    return mujoco
+
+
+def _no_gl(why: str) -> str:
+    return (
+        f"MuJoCo cannot draw offscreen (MUJOCO_GL={os.environ.get('MUJOCO_GL', '')}): {why}\n"
+        "On Debian or Ubuntu: apt-get install libegl1 libgl1-mesa-dri, or apt-get install libosmesa6 and "
+        "set MUJOCO_GL=osmesa before Python starts."
+    )

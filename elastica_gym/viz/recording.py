@@ -4,7 +4,7 @@ A recording holds, on the timelines ``step`` and ``sim_time``:
 
 | entity | content |
 |---|---|
-| ``/ground`` | the ground and, under the animal, nothing else |
+| ``/ground`` | the ground, a solid slab whose upper side is a hair below the grid at y = 0 |
 | ``/animal/body`` | a solid capsule for each element, coloured by the force that the ground carries |
 | ``/animal/nodes`` | the nodes, inside the capsules |
 | ``/animal/head``, ``/animal/trail`` | the head and where it has been |
@@ -18,6 +18,7 @@ It is written a column at a time, and opens with the layout that `_blueprint` de
 
 import importlib
 import os
+import warnings
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -39,6 +40,8 @@ TARGET = (214, 69, 65, 150)
 HEAD = (235, 127, 38)
 UNLOADED = np.array((178, 208, 196))
 LOADED = np.array((10, 88, 84))
+SERIES = ((74, 163, 223), (235, 127, 38), (126, 196, 150), (214, 69, 65), (178, 132, 207), (222, 198, 82))
+"""Colours of reward terms"""
 LEVELS = ((235, 127, 38), (74, 163, 223), (126, 196, 150))
 """Colours of the three levels of activations"""
 
@@ -110,7 +113,10 @@ def read_positions(path: str | Path) -> tuple[Array, Array]:
     if not path.is_file():
         raise FileNotFoundError(f"no recording at {path}")
     try:
-        stream = rr.chunk.RrdReader(path).stream()
+        with warnings.catch_warnings():
+            # of a file cut short, rerun also warns that it may be an old one
+            warnings.simplefilter("ignore")
+            stream = rr.chunk.RrdReader(path).stream()
         parts = stream.filter(content="/animal/nodes", components="Points3D:positions").to_chunks()
     except Exception as error:
         raise ValueError(f"{path} is not a whole rerun recording: {error}") from error
@@ -169,7 +175,7 @@ def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     """Log what does not move: axes, ground and target."""
     rr = _rerun()
     centre, width = _view_box(rollout)
-    half, depth = 4.0 * width, 0.02 * rollout.body_length
+    half, depth = 4.0 * width, 0.01 * rollout.body_length
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
     stream.log(
         "ground",
@@ -206,11 +212,13 @@ def _log_animal(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     nodes = rr.Points3D.columns(positions=rollout.nodes.reshape(-1, 3)).partition([rollout.nodes.shape[1]] * n_steps)
     _columns(stream, rollout, "animal/nodes", nodes)
     stream.log("animal/nodes", rr.Points3D.from_fields(radii=0.2 * thick, colors=[HEAD]), static=True)
-    _columns(stream, rollout, "animal/head", rr.Points3D.columns(positions=rollout.head))
-    stream.log("animal/head", rr.Points3D.from_fields(radii=1.25 * thick, colors=[HEAD]), static=True)
+    _columns(stream, rollout, "animal/head", rr.Ellipsoids3D.columns(
+        centers=rollout.head, half_sizes=np.full_like(rollout.head, 1.25 * thick),
+    ))  # fmt: skip
+    stream.log("animal/head", rr.Ellipsoids3D.from_fields(colors=[HEAD], fill_mode="solid"), static=True)
 
     # a piece of the trail for each step; the blueprint shows all pieces up to now
-    path = rollout.head + [0.0, 1.5 * thick, 0.0]
+    path = rollout.head + np.array([0.0, 1.5 * thick, 0.0])
     pieces = np.stack([np.concatenate([path[:1], path[:-1]]), path], axis=1)
     _columns(stream, rollout, "animal/trail", rr.LineStrips3D.columns(strips=pieces))
     stream.log("animal/trail", rr.LineStrips3D.from_fields(radii=0.25 * thick, colors=[HEAD]), static=True)
@@ -225,9 +233,9 @@ def _log_series(stream: "rr.RecordingStream", rollout: Rollout) -> None:
         _columns(stream, rollout, entity, columns.partition([values.shape[1]] * len(values)))
         stream.log(entity, rr.SeriesLines(names=names, **style), static=True)
 
-    for term, values in rollout.rewards.items():
-        log(f"reward/{term}", values[:, None], [term])
-    log("return", rollout.episode_return[:, None], ["return"])
+    for k, (term, values) in enumerate(rollout.rewards.items()):
+        log(f"reward/{term}", values[:, None], [term], colors=[SERIES[k % len(SERIES)]])
+    log("return", rollout.episode_return[:, None], ["return"], colors=[SERIES[0]])
     log("animal/normal_force", rollout.normal_force, [f"element {k}" for k in range(rollout.normal_force.shape[1])])
     for group in activation_groups(rollout):
         members = [k for k, name in enumerate(rollout.activation_names) if name.startswith(f"{group}/")]
@@ -285,7 +293,8 @@ def _blueprint(rollout: Rollout) -> Any:
         overrides={"/animal/trail": [rrb.VisibleTimeRanges([from_start, from_first])]},
         background=BACKGROUND,
         line_grid=rrb.LineGrid3D(
-            visible=True, spacing=0.5 * rollout.body_length, plane=rr.components.Plane3D((0.0, 1.0, 0.0)), stroke_width=1.0, color=GRID
+            visible=True, spacing=0.5 * rollout.body_length, plane=rr.components.Plane3D((0.0, 1.0, 0.0)),
+            stroke_width=1.0, color=GRID,
         ),
         eye_controls=rrb.EyeControls3D(
             kind="Orbital", look_target=centre, position=centre + width * np.array([0.0, 0.8, 0.7]),

@@ -8,7 +8,7 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
-from ..cosserat.model import Array
+from ..cosserat.model import Array, Index
 from ..muscles import activation_names
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Rollout:
     target : Array or None
         Position of the target [m], (T, 3), where the task has one.
     target_radius : float
-        How near the target the head has to come [m].
+        Radius of the ball that marks it [m].
     rewards : dict of str to Array
         Weighted reward of each term, zero at the start, (T,) each.
     activations : Array
@@ -57,7 +57,7 @@ class Rollout:
     name: str
     body_length: float
     elements_per_rod: tuple[int, ...]
-    step: Array
+    step: Index
     sim_time: Array
     nodes: Array
     radii: Array
@@ -81,9 +81,14 @@ class Rollout:
 
     def segments(self) -> tuple[Array, Array]:
         """Return where each element begins and ends [m], two of (T, M, 3)."""
-        bounds = np.cumsum([0, *(n + 1 for n in self.elements_per_rod)])
-        first = np.concatenate([np.arange(b, e - 1) for b, e in zip(bounds, bounds[1:], strict=False)])
+        first = first_nodes(self.elements_per_rod)
         return self.nodes[:, first], self.nodes[:, first + 1]
+
+
+def first_nodes(elements_per_rod: tuple[int, ...]) -> Index:
+    """Return the node at which each element begins, for rods that follow one another, (M,)."""
+    starts = np.cumsum([0, *(n + 1 for n in elements_per_rod)])
+    return np.concatenate([start + np.arange(n) for start, n in zip(starts, elements_per_rod, strict=False)])
 
 
 class Recorder:
@@ -150,15 +155,15 @@ class Recorder:
             raise RuntimeError("nothing was captured: call capture() after reset() and after every step()")
         env = self.env
         series = {name: np.stack([m[name] for m in self._moments]) for name in self._moments[0]}
-        step = np.arange(len(self._moments))
-        terms = dict.fromkeys([*env.task.reward_weights, *(t for r in self._rewards for t in r)])
+        step = np.arange(len(self._moments), dtype=np.int64)
+        terms = dict.fromkeys(term for rewards in self._rewards for term in rewards)
         target = series.pop("target")
         return Rollout(
             name=env.spec.id if env.spec else env.task.name,
             body_length=env.body.senses.length,
             elements_per_rod=tuple(env.body.model.n_elements.tolist()),
             step=step,
-            sim_time=step * env.control_dt,
+            sim_time=np.asarray(step * env.control_dt, dtype=np.float64),
             target=None if np.isnan(target).any() else target,
             target_radius=0.05 * env.body.senses.length,
             rewards={term: np.array([r.get(term, 0.0) for r in self._rewards]) for term in terms},
