@@ -1,18 +1,22 @@
 """Bad input: what a user may get wrong, told in one line that says how to mend it."""
 
 import difflib
-import importlib.util
+import importlib.metadata
 import os
+import re
 import sys
 from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import NoReturn
 
 EXTRAS = {
-    "train": ("torch", "stable_baselines3", "rich", "tyro", "matplotlib", "yaml"),
-    "viz": ("rerun",),
+    "train": {
+        **{"stable-baselines3": "2.9", "torch": "2.3", "tyro": "0.9", "rich": "13"},
+        **{"matplotlib": "3.8", "pyyaml": "6"},
+    },
+    "viz": {"rerun-sdk": "0.26"},
 }
-"""Modules that each optional dependency group of the package brings."""
+"""Packages that each optional dependency group brings and that are used here, with their lowest versions."""
 
 
 class BadInputError(Exception):
@@ -29,11 +33,21 @@ def choose(what: str, name: str, valid: Collection[str]) -> str:
 
 
 def missing_extra(extra: str) -> str | None:
-    """Return what to install for the group `extra`, or None if it is complete."""
-    missing = [module for module in EXTRAS[extra] if importlib.util.find_spec(module) is None]
-    if not missing:
-        return None
-    return f"{', '.join(missing)} not installed: pip install 'elastica-gym[{extra}]'"
+    """Return what is missing of the group `extra` and which command installs it, or None if it is complete."""
+    troubles = []
+    for package, lowest in EXTRAS[extra].items():
+        try:
+            installed = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            troubles.append(f"{package} is not installed")
+            continue
+        if _numbers(installed) < _numbers(lowest):
+            troubles.append(f"{package} {installed} is older than {lowest}")
+    return f"{', '.join(troubles)}: pip install --upgrade 'elastica-gym[{extra}]'" if troubles else None
+
+
+def _numbers(version: str) -> list[int]:
+    return [int(part) for part in re.match(r"[\d.]*\d", version)[0].split(".")]  # type: ignore[index]
 
 
 def require_extra(extra: str) -> None:

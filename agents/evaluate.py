@@ -110,7 +110,8 @@ def _evaluate_batch(
         policy.reset(seeds)
         infos: dict[int, dict[str, Any]] = {}
         while len(infos) < len(seeds):
-            observations, _, dones, step_infos = env.step(policy(observations, env.batch))
+            env.step_async(policy(observations, env.batch))
+            observations, _, dones, step_infos = env.step_wait()
             for i in np.flatnonzero(dones):
                 # an environment that is done goes on with episodes that nobody counts until the last one is done
                 infos.setdefault(int(i), step_infos[i])

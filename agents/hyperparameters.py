@@ -56,9 +56,10 @@ def load(algo: str, env_id: str, *, config: Path | None = None, overrides: dict[
         raise BadInputError(f"Cannot read the configuration {path}: {error.strerror}") from error
     except yaml.YAMLError as error:
         raise BadInputError(f"The configuration {path} is not YAML: {error}") from error
-    if not isinstance(entries, dict) or not isinstance(entries.get(env_id, entries.get("default")), dict):
+    entry = entries.get(env_id, entries.get("default")) if isinstance(entries, dict) else None
+    if not isinstance(entry, dict):
         raise BadInputError(f"The configuration {path} has no entry {env_id!r} and none called 'default'.")
-    values = {**entries.get(env_id, entries.get("default")), **(overrides or {})}
+    values = {**entry, **(overrides or {})}
     for key in values:
         choose(f"key of the {algo} configuration", key, valid_keys(algo))
     return values

@@ -36,7 +36,7 @@ class TrainArguments:
     config: Path | None = None
     """Another configuration file of the same format."""
     threads: int = 2
-    """Threads for the physics, and for the networks between rollouts."""
+    """Threads for the physics; results do not depend on them."""
     evaluations: int = 10
     """Evaluation points besides the one at the start, spread evenly over the budget; 0 for none at all."""
     evaluation_episodes: int = 20

@@ -83,8 +83,10 @@ class Training:
     def __init__(self, folder: Path, config: dict[str, Any], *, resume: bool):
         self.folder = folder
         self.config = config
-        torch.set_num_threads(config["threads"])
-        self.adapter = self._make_environment()
+        # networks this small gain nothing from a second thread, and lose much where others use the machine as well
+        torch.set_num_threads(1)
+        values = config["hyperparameters"]
+        self.adapter = self._make_environment(n_envs=values.get("n_envs", 1), n_threads=config["threads"])
         checkpoint = last_whole_checkpoint(folder / "checkpoints") if resume else None
         if resume and checkpoint is None:
             raise BadInputError(f"The run {folder} has no whole checkpoint to resume from; start it anew.")
@@ -102,12 +104,12 @@ class Training:
 
     # Making, saving and restoring
 
-    def _make_environment(self) -> BatchVecEnv:
-        values = self.config["hyperparameters"]
-        env_kwargs = values.get("env_kwargs") or {}
-        return make_batch_vec_env(
-            self.config["env"], n_envs=values.get("n_envs", 1), n_threads=self.config["threads"], **env_kwargs
-        )
+    def _make_environment(self, *, n_envs: int, n_threads: int) -> BatchVecEnv:
+        env_kwargs = self.config["hyperparameters"].get("env_kwargs") or {}
+        try:
+            return make_batch_vec_env(self.config["env"], n_envs=n_envs, n_threads=n_threads, **env_kwargs)
+        except (TypeError, ValueError) as error:
+            raise BadInputError(f"The environment refuses its arguments: {error}") from error
 
     def _new_model(self) -> Any:
         values = self.config["hyperparameters"]
@@ -197,7 +199,7 @@ class Training:
 
     def _compile(self) -> None:
         """Step one environment, so that compiling does not count as training time."""
-        env = make_batch_vec_env(self.config["env"], n_envs=1, n_threads=1)
+        env = self._make_environment(n_envs=1, n_threads=1)
         env.reset()
         env.step(np.zeros((1, *env.action_space.shape), np.float32))  # type: ignore[misc]
         env.close()

@@ -1,7 +1,7 @@
 """The batched environment presented as a Stable-Baselines3 ``VecEnv``."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import gymnasium as gym
@@ -12,7 +12,7 @@ from stable_baselines3.common.vec_env import VecEnv
 
 import elastica_gym  # noqa: F401  registers the environments
 
-VecEnvIndices = None | int | Sequence[int]
+VecEnvIndices = None | int | Iterable[int]
 
 
 class BatchVecEnv(VecEnv):
@@ -99,7 +99,7 @@ class BatchVecEnv(VecEnv):
             self._sums[key] += np.where(dones, last[key], infos[key]) if ended.size else infos[key]
         self._lengths += 1
         env_infos = [self._running] * self.num_envs
-        for i in ended:
+        for i in ended.tolist():
             env_infos[i] = self._episode_info(i, bool(truncated[i] and not terminated[i]), infos)
         self._lengths[ended] = 0
         for total in self._sums.values():
