@@ -30,28 +30,36 @@ TARGET: Color = (0.84, 0.27, 0.25)
 SUPERSAMPLING = 2
 """Pictures are drawn this many times larger and averaged down"""
 
+FIELD_OF_VIEW = 32.0
+"""Vertical angle that a picture shows [deg]"""
+
+MARGIN = 1.25
+"""How much larger pictures are than what they have to show"""
+
 FIGURES = 12_000
 """Largest number of bodies, such as capsules, in one picture"""
 
 # the lab's (x, y, z) with y up are (y, z, x) in a world with z up, a rotation; lengths are body lengths
+# a lamp far away, since the shadows of a directional light leave a pattern on the ground
 SCENE = """
 <mujoco>
   <statistic extent="1" center="0 0 0"/>
   <visual>
-    <global offwidth="{width}" offheight="{height}" fovy="32"/>
+    <global offwidth="{width}" offheight="{height}" fovy="{fov}"/>
     <quality shadowsize="4096" offsamples="0"/>
     <headlight ambient="0.36 0.36 0.36" diffuse="0.17 0.17 0.17" specular="0 0 0"/>
-    <map znear="0.02" zfar="60" fogstart="6" fogend="18" shadowclip="3"/>
+    <map znear="0.02" zfar="60" fogstart="6" fogend="18"/>
     <rgba fog="0.96 0.965 0.955 1" haze="0.96 0.965 0.955 1"/>
   </visual>
   <asset>
     <texture type="skybox" builtin="flat" rgb1="0.96 0.965 0.955" width="8" height="48"/>
-    <texture name="grid" type="2d" builtin="flat" rgb1="0.93 0.94 0.925" mark="edge" markrgb="0.79 0.81 0.78"
+    <texture name="grid" type="2d" builtin="flat" rgb1="0.96 0.965 0.95" mark="edge" markrgb="0.76 0.79 0.76"
       width="512" height="512"/>
     <material name="ground" texture="grid" texrepeat="4 4" texuniform="true" specular="0" shininess="0"/>
   </asset>
   <worldbody>
-    <light directional="true" pos="-1 -1 2" dir="0.35 0.35 -1" diffuse="0.55 0.55 0.53" specular="0.25 0.25 0.25"/>
+    <light directional="false" pos="-7 -7 20" dir="0.35 0.35 -1" cutoff="18" exponent="0" diffuse="0.55 0.55 0.53"
+      specular="0.25 0.25 0.25"/>
     <geom type="plane" size="0 0 0.1" material="ground"/>
   </worldbody>
 </mujoco>
@@ -89,7 +97,7 @@ class Camera:
     distance : float
         How far the camera is from it [m].
     azimuth : float
-        Direction of view about the vertical; 0 looks along -z, with +x to the right [deg].
+        Direction of view about the vertical; 0 looks along -z and 90 along +x [deg].
     elevation : float
         Height of the view; -90 looks straight down [deg].
     """
@@ -126,7 +134,7 @@ class Stage:
                 raise ValueError(f"{name} must be positive, not {value}")
         self._mujoco = _mujoco()
         large = {"width": SUPERSAMPLING * width, "height": SUPERSAMPLING * height}
-        self._model = self._mujoco.MjModel.from_xml_string(SCENE.format(**large))
+        self._model = self._mujoco.MjModel.from_xml_string(SCENE.format(fov=FIELD_OF_VIEW, **large))
         self._data = self._mujoco.MjData(self._model)
         self._mujoco.mj_forward(self._model, self._data)
         self._unit = unit
@@ -151,8 +159,8 @@ class Stage:
         view = mujoco.MjvCamera()
         view.type = mujoco.mjtCamera.mjCAMERA_FREE
         view.lookat[:] = self._world(np.asarray(camera.look_at))
-        view.distance, view.azimuth, view.elevation = camera.distance / self._unit, camera.azimuth, camera.elevation
-        view.azimuth += 180.0
+        view.distance = camera.distance / self._unit
+        view.azimuth, view.elevation = 180.0 - camera.azimuth, camera.elevation
         self._renderer.update_scene(self._data, view)
         for figure in figures:
             self._add(scene, figure)
@@ -278,13 +286,21 @@ def render_frames(positions: Array, radii: Array, *, elements_per_rod: tuple[int
 
 def framing(points: Array, aspect: float, *, azimuth: float = 0.0, elevation: float = -50.0) -> Camera:
     """Return a camera that sees all points (K, 3), in a picture ``aspect`` times as wide as high."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    turn = np.deg2rad(azimuth)
-    across = abs((high - low)[0] * np.cos(turn)) + abs((high - low)[2] * np.sin(turn))
-    deep = abs((high - low)[0] * np.sin(turn)) + abs((high - low)[2] * np.cos(turn))
-    needed = max(across / aspect, deep * np.sin(np.deg2rad(-elevation)), 0.1 * across)
-    distance = 0.65 * needed / np.tan(np.deg2rad(16.0)) + 0.5 * deep
-    return Camera(look_at=0.5 * (low + high), distance=float(distance), azimuth=azimuth, elevation=elevation)
+    az, el = np.deg2rad((azimuth, elevation))
+    away = np.array([np.sin(az) * np.cos(el), np.sin(el), -np.cos(az) * np.cos(el)])
+    right = np.array([np.cos(az), 0.0, np.sin(az)])
+    up = np.cross(right, away)
+    high = np.tan(np.deg2rad(0.5 * FIELD_OF_VIEW)) / MARGIN
+    look_at = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    # what is near looks larger, so the middle of the picture is found in a few steps
+    for _ in range(8):
+        across, along, deep = (points - look_at) @ right, (points - look_at) @ up, (points - look_at) @ away
+        distance = float(np.max(np.maximum(np.abs(across) / (aspect * high), np.abs(along) / high) - deep))
+        seen_across, seen_along = across / (distance + deep), along / (distance + deep)
+        look_at = look_at + 0.5 * distance * (
+            (seen_across.min() + seen_across.max()) * right + (seen_along.min() + seen_along.max()) * up
+        )
+    return Camera(look_at=look_at, distance=1.02 * distance, azimuth=azimuth, elevation=elevation)
 
 
 def write_video(frames: Image, path: str | Path, fps: float = 20.0) -> Path:
@@ -300,6 +316,8 @@ def write_video(frames: Image, path: str | Path, fps: float = 20.0) -> Path:
     except ImportError as error:
         raise ImportError("videos need imageio-ffmpeg: pip install 'elastica-gym[viz]'") from error
     path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.touch()
     height, width = frames.shape[1:3]
     writer = imageio_ffmpeg.write_frames(str(path), (width, height), fps=fps, macro_block_size=2, quality=8)
     try:
@@ -307,7 +325,7 @@ def write_video(frames: Image, path: str | Path, fps: float = 20.0) -> Path:
         for frame in frames:
             writer.send(np.ascontiguousarray(frame))
     except OSError as error:
-        raise OSError(f"cannot write the video {path}: {error}") from error
+        raise OSError(f"cannot write the video {path}: {str(error).splitlines()[0]}") from error
     finally:
         writer.close()
     if not path.is_file() or path.stat().st_size == 0:

@@ -16,6 +16,7 @@ A recording holds, on the timelines ``step`` and ``sim_time``:
 It is written a column at a time, and opens with the layout that `_blueprint` describes.
 """
 
+import contextlib
 import importlib
 import os
 import warnings
@@ -150,7 +151,8 @@ def _write_whole(path: Path, data: bytes) -> Path:
             os.fsync(file.fileno())
         part.replace(path)
     except OSError as error:
-        part.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            part.unlink()
         raise OSError(error.errno, f"cannot write the recording of {len(data)} bytes: {error.strerror}", str(path)) \
             from error  # fmt: skip
     return path

@@ -115,6 +115,7 @@ class Recorder:
         self._index = index
         self._nodes = np.concatenate([np.arange(s, s + n + 1) for s, n in spans])
         self._elements = np.concatenate([np.arange(s, s + n) for s, n in spans])
+        self._root_section = np.concatenate([rod.radius * np.sqrt(rod.rest_length) for rod in self.env.body.rods])
         self._moments: list[dict[str, Array]] = []
         self._rewards: list[dict[str, float]] = []
 
@@ -128,9 +129,11 @@ class Recorder:
         """
         env, i, state = self.env, self._index, self.env.state
         target = env.target
+        lengths = np.linalg.norm(np.diff(state.x[i], axis=1), axis=0)[self._elements]
         moment = {
             "nodes": state.x[i].T[self._nodes],
-            "radii": state.radius[i, self._elements],
+            # at constant volume; State.radius knows only after the first step
+            "radii": self._root_section / np.sqrt(lengths),
             "normal_force": state.normal_force[i, self._elements],
             "head": state.x[i, :, env.body.senses.head].copy(),
             "target": np.full(3, np.nan) if target is None else np.array(target[i]),

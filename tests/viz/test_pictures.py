@@ -1,0 +1,31 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def run(script, *arguments):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, str(ROOT / "scripts" / script), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, env=environment)
+
+
+def test_muscles(tmp_path):
+    pytest.importorskip("matplotlib")
+    done = run("draw_muscles.py", "--output", tmp_path / "new" / "muscles.png")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "new" / "muscles.png").stat().st_size > 20_000
+
+
+def test_snake(tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    path = tmp_path / "snake.png"
+    done = run("make_picture.py", "--output", path, "--size", 320, 120)
+    if "pictures need MuJoCo" in done.stderr or "cannot draw offscreen" in done.stderr:
+        pytest.skip(done.stderr)
+    assert done.returncode == 0, done.stderr
+    assert image.open(path).size == (320, 120)
