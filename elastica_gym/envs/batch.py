@@ -220,11 +220,10 @@ class BatchEnv(VectorEnv):
         n_threads = min(self.n_threads, self.num_envs)
         borders = [self.num_envs * t // n_threads for t in range(n_threads + 1)]
         spans = list(zip(borders[:-1], borders[1:], strict=True))
-        futures = [
-            _pool(os.getpid(), n_threads - 1).submit(advance, self.body.model, self.state, self.control, *span, dt, n_substeps)
-            for span in spans[1:]
-        ]
-        advance(self.body.model, self.state, self.control, *spans[0], dt, n_substeps)
+        batch = self.body.model, self.state, self.control
+        pool = _pool(os.getpid(), n_threads - 1)
+        futures = [pool.submit(advance, *batch, *span, dt, n_substeps) for span in spans[1:]]
+        advance(*batch, *spans[0], dt, n_substeps)
         for future in futures:
             future.result()
 
@@ -278,21 +277,22 @@ class BatchEnv(VectorEnv):
     def _start(self, mask: Array) -> None:
         """Draw new episodes where the mask is true, and observe them."""
         assert self._generators is not None
-        for i in np.flatnonzero(mask):
+        begun = np.flatnonzero(mask)
+        for i in begun:
             draw_start(self._generators[i], self.body, self.state, i)
-        self.control.couple[mask] = 0.0
-        self.elapsed[mask] = 0
-        self.activations[mask] = self.levels[mask] = self._distance[mask] = 0.0
-        self._ended[mask] = False
+        self.control.couple[begun] = 0.0
+        self.elapsed[begun] = 0
+        self.activations[begun] = self.levels[begun] = self._distance[begun] = 0.0
+        self._ended[begun] = False
         feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
         for old, new in zip(self._before, self.pose, strict=True):
-            old[mask] = new[mask]
-        for i in np.flatnonzero(mask):
+            old[begun] = new[begun]
+        for i in begun:
             goal = self.task.draw_goal(self._generators[i], self._situation_of(i))
             if self.goal.shape[1] != goal.size:
                 self.goal = np.zeros((self.num_envs, goal.size))
             self.goal[i] = goal
-        self._observe(mask)
+        self._observe(begun)
 
     def _situation_of(self, i: int) -> Situation:
         one = slice(i, i + 1)
@@ -307,8 +307,9 @@ class BatchEnv(VectorEnv):
 
     def _restart(self, ended: Array, info: dict[str, Any]) -> dict[str, Any]:
         """Begin new episodes where old ones ended, which keep their last observation in the info (SAME_STEP)."""
+        aside = {**info, **{f"_{name}": ended.copy() for name in info}}
         final = {"final_obs": self._observations.copy(), "_final_obs": ended.copy(),
-                 "final_info": {**info, **{f"_{name}": ended.copy() for name in info}}, "_final_info": ended.copy()}  # fmt: skip
+                 "final_info": aside, "_final_info": ended.copy()}  # fmt: skip
         self._start(ended)
         return {**info, **final}
 
@@ -367,7 +368,7 @@ def _pool(process: int, n_threads: int) -> ThreadPoolExecutor:
 def _merge_weights(task: Task, changed: dict[str, float]) -> dict[str, float]:
     unknown = set(changed) - set(task.reward_weights)
     if unknown:
-        raise ValueError(f"weights has no term {sorted(unknown)[0]!r}; {task.name} has {', '.join(task.reward_weights)}")
+        raise ValueError(f"weights has no term {sorted(unknown)[0]!r}; there are {', '.join(task.reward_weights)}")
     for name, value in changed.items():
         require_not_negative(f"weights[{name!r}]", abs(value))
     return {**task.reward_weights, **changed}

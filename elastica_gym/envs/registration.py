@@ -28,6 +28,8 @@ def register_all() -> None:
     """Register every id. No ``max_episode_steps``: the batch truncates, and make would add a second limit."""
     for name in TASKS:
         gymnasium.register(
-            f"{NAMESPACE}/{name}-v0", entry_point=f"{__name__}:make_single", vector_entry_point=f"{__name__}:make_batch",
+            f"{NAMESPACE}/{name}-v0",
+            entry_point=f"{__name__}:make_single",
+            vector_entry_point=f"{__name__}:make_batch",
             kwargs={"task": name},
-        )  # fmt: skip
+        )

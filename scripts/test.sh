@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Installs what tests need and runs all that are fast; --slow runs the slow ones too. Other arguments go to pytest.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source scripts/environment.sh
+install_into_venv train,viz,test,bench
+
+select=(-m "not slow")
+if [ "${1:-}" = --slow ]; then
+    select=()
+    shift
+fi
+.venv/bin/ruff check .
+.venv/bin/mypy
+.venv/bin/python scripts/benchmark.py --start
+.venv/bin/python -m pytest -n 2 "${select[@]}" "$@"

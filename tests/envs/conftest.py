@@ -1,0 +1,31 @@
+import gymnasium
+import numpy as np
+import pytest
+
+from elastica_gym.envs import IDS
+
+SHORT = 0.5
+"""Episode in most tests [s]: ten control steps"""
+
+
+@pytest.fixture(params=IDS)
+def env_id(request):
+    return request.param
+
+
+@pytest.fixture
+def make_vec():
+    """Make batches, of short episodes unless told otherwise, and close them."""
+    made = []
+
+    def make(env_id, num_envs=2, *, duration=SHORT, **kwargs):
+        made.append(gymnasium.make_vec(env_id, num_envs=num_envs, duration=duration, **kwargs))
+        return made[-1].unwrapped
+
+    yield make
+    for env in made:
+        env.close()
+
+
+def random_actions(seed, steps, num_envs=1):
+    return np.random.default_rng(seed).uniform(-1.0, 1.0, (steps, num_envs, 42)).astype(np.float32)

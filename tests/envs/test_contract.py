@@ -1,0 +1,221 @@
+"""What every registered environment keeps: a new one is tested for free."""
+
+import multiprocessing
+import pickle
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode
+
+from .conftest import SHORT, random_actions
+
+
+def roll(env, actions, seed):
+    """Observations, rewards and terminations of a batch, from a reset with a seed."""
+    observations, _ = env.reset(seed=seed)
+    seen, rewards, ends = [observations], [], []
+    for action in actions:
+        observations, reward, terminated, truncated, _ = env.step(action)
+        seen.append(observations)
+        rewards.append(reward)
+        ends.append((terminated, truncated))
+    return np.array(seen), np.array(rewards), np.array(ends)
+
+
+def assert_same(first, second):
+    for a, b in zip(first, second, strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
+def test_gymnasium_checker_accepts_it(env_id):
+    env = gymnasium.make(env_id, duration=SHORT)
+    check_env(env.unwrapped)
+    env.close()
+
+
+def test_same_seed_gives_the_same_bits(env_id, make_vec):
+    actions = random_actions(0, 12, 2)
+    assert_same(roll(make_vec(env_id), actions, 5), roll(make_vec(env_id), actions, 5))
+
+
+def test_second_episode_equals_that_of_a_fresh_environment(env_id, make_vec):
+    actions = random_actions(1, 12, 2)
+    used = make_vec(env_id)
+    roll(used, random_actions(2, 7, 2), 3)
+    assert_same(roll(used, actions, 11), roll(make_vec(env_id), actions, 11))
+
+
+@pytest.mark.parametrize(("num_envs", "n_threads"), [(1, 1), (3, 1), (3, 2), (17, 2), (17, 5)])
+def test_environment_of_a_batch_equals_the_single_one(env_id, make_vec, num_envs, n_threads):
+    actions = random_actions(4, 13, 17)[:, :num_envs]
+    batch = make_vec(env_id, num_envs, n_threads=n_threads, autoreset_mode=AutoresetMode.DISABLED)
+    seen, rewards, ends = roll(batch, actions[:10], 100)
+    single = gymnasium.make(env_id, duration=SHORT)
+    for i in {0, num_envs // 2, num_envs - 1}:
+        observation, _ = single.reset(seed=100 + i)
+        np.testing.assert_array_equal(observation, seen[0, i])
+        for t in range(10):
+            observation, reward, terminated, truncated, _ = single.step(actions[t, i])
+            np.testing.assert_array_equal(observation, seen[t + 1, i])
+            assert reward == rewards[t, i]
+            assert (terminated, truncated) == tuple(ends[t, :, i])
+    single.close()
+
+
+def test_integer_seed_counts_up_over_the_batch(env_id, make_vec):
+    together, _ = make_vec(env_id, 3).reset(seed=7)
+    listed, _ = make_vec(env_id, 3).reset(seed=[7, 8, 9])
+    np.testing.assert_array_equal(together, listed)
+    assert not np.array_equal(together[0], together[1])
+
+
+def test_different_seeds_give_different_returns(env_id, make_vec):
+    _, rewards, _ = roll(make_vec(env_id, 8), np.zeros((10, 8, 42)), 0)
+    assert len(set(rewards.sum(axis=0))) == 8
+
+
+def test_no_observation_is_constant(env_id, make_vec):
+    env = make_vec(env_id, 8, duration=2.0)
+    seen, _, _ = roll(env, random_actions(5, 40, 8), 0)
+    constant = np.flatnonzero(np.ptp(seen.reshape(-1, seen.shape[-1]), axis=0) == 0.0)
+    assert [env.observation_names[k] for k in constant] == []
+
+
+def test_observations_are_named_and_within_their_space(env_id, make_vec):
+    env = make_vec(env_id, 8, duration=2.0)
+    assert len(env.observation_names) == env.single_observation_space.shape[0] == len(set(env.observation_names))
+    seen, _, _ = roll(env, random_actions(6, 40, 8), 0)
+    assert seen.dtype == np.float32
+    assert np.isfinite(env.single_observation_space.high).all()
+    assert all(env.single_observation_space.contains(o) for o in seen.reshape(-1, seen.shape[-1]))
+
+
+def test_returned_arrays_are_the_callers_own(env_id, make_vec):
+    env = make_vec(env_id)
+    first, _ = env.reset(seed=0)
+    kept = first.copy()
+    second = env.step(np.ones((2, 42)))[0]
+    np.testing.assert_array_equal(first, kept)
+    assert not np.shares_memory(first, second)
+    assert not np.shares_memory(second, env._observations)
+
+
+def test_reward_is_the_sum_of_its_terms(env_id, make_vec):
+    env = make_vec(env_id, 4)
+    env.reset(seed=0)
+    for action in random_actions(7, 10, 4):
+        _, reward, _, _, info = env.step(action)
+        terms = [info[f"reward_{name}"] for name in env.task.reward_weights]
+        np.testing.assert_allclose(np.sum(terms, axis=0), reward, rtol=1e-12, atol=1e-15)
+
+
+def test_state_continues_bit_for_bit(env_id, make_vec):
+    actions = random_actions(8, 16, 3)
+    env = make_vec(env_id, 3, autoreset_mode=AutoresetMode.SAME_STEP)
+    roll(env, actions[:4], 0)
+    saved = pickle.loads(pickle.dumps(env.get_state()))
+    other = make_vec(env_id, 3, autoreset_mode=AutoresetMode.SAME_STEP)
+    other.set_state(saved)
+    # past the end of an episode, so that the generators are compared too
+    for action in actions[4:]:
+        assert_same(env.step(action)[:4], other.step(action)[:4])
+
+
+def test_state_of_another_batch_is_refused(env_id, make_vec):
+    env = make_vec(env_id, 3)
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match="3 environments"):
+        make_vec(env_id, 2).set_state(env.get_state())
+
+
+def test_pickled_environment_goes_on_alike(env_id, make_vec):
+    env = make_vec(env_id)
+    roll(env, random_actions(9, 3, 2), 0)
+    copy = pickle.loads(pickle.dumps(env))
+    for action in random_actions(10, 9, 2):
+        assert_same(env.step(action)[:4], copy.step(action)[:4])
+
+
+def _worker(env_id, queue):
+    import elastica_gym  # noqa: F401  # a spawned process has to register the ids
+
+    env = gymnasium.make_vec(env_id, num_envs=3, duration=SHORT, n_threads=2)
+    queue.put(roll(env.unwrapped, random_actions(11, 3, 3), 2))
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_worker_processes_give_the_same(env_id, make_vec, method):
+    here = roll(make_vec(env_id, 3, n_threads=2), random_actions(11, 3, 3), 2)
+    context = multiprocessing.get_context(method)
+    queue = context.Queue()
+    process = context.Process(target=_worker, args=(env_id, queue))
+    process.start()
+    assert_same(queue.get(timeout=120), here)
+    process.join(timeout=30)
+    assert process.exitcode == 0
+
+
+def test_closing_twice_is_fine(env_id):
+    for env in (gymnasium.make(env_id), gymnasium.make_vec(env_id, num_envs=2)):
+        env.close()
+        env.close()
+
+
+@pytest.mark.parametrize("shape", [(42,), (2, 41), (3, 42), (2, 1, 42)])
+def test_actions_of_another_shape_are_refused(env_id, make_vec, shape):
+    env = make_vec(env_id)
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match=r"actions must have shape \(2, 42\), not"):
+        env.step(np.zeros(shape))
+
+
+def test_actions_that_are_not_numbers_are_refused_and_nothing_moves(env_id, make_vec):
+    env = make_vec(env_id)
+    env.reset(seed=0)
+    actions = np.zeros((2, 42))
+    actions[1, 3] = np.nan
+    with pytest.raises(ValueError, match="environment 1 hold NaN"):
+        env.step(actions)
+    assert env.elapsed.tolist() == [0, 0]
+
+
+def test_actions_out_of_range_are_clipped(env_id, make_vec):
+    wild = 5.0 * random_actions(12, 10, 2)
+    assert_same(roll(make_vec(env_id), wild, 0), roll(make_vec(env_id), np.clip(wild, -1.0, 1.0), 0))
+
+
+def test_step_before_reset_says_so(env_id, make_vec):
+    with pytest.raises(RuntimeError, match="reset"):
+        make_vec(env_id).step(np.zeros((2, 42)))
+
+
+@pytest.mark.parametrize(
+    ("kwargs", "message"),
+    [
+        ({"num_envs": 0}, "num_envs must be from 1 to 4096, not 0"),
+        ({"num_envs": 5000}, "num_envs must be from 1 to 4096, not 5000"),
+        ({"sim_dt": 2e-4}, "time step must be below"),
+        ({"sim_dt": 0.0}, "sim_dt must be a positive number, not 0.0"),
+        ({"control_dt": -0.1}, "control_dt must be a positive number, not -0.1"),
+        ({"duration": float("nan")}, "duration must be a positive number, not nan"),
+        ({"weights": {"speed": 1.0}}, "no term 'speed'"),
+        ({"body_kwargs": {"n_elements": 3}}, "n_elements must be at least 16, not 3"),
+        ({"render_mode": "human"}, "render_mode"),
+    ],
+)
+def test_arguments_that_cannot_be_are_refused_at_construction(env_id, kwargs, message):
+    from elastica_gym.envs import TASKS, BatchEnv
+
+    task = TASKS[env_id.split("/")[1].removesuffix("-v0")]
+    with pytest.raises(ValueError, match=message):
+        BatchEnv(task, **kwargs)
+
+
+def test_four_thousand_animals_at_once(env_id, make_vec):
+    env = make_vec(env_id, 4096, control_dt=1e-3, duration=0.002, autoreset_mode=AutoresetMode.SAME_STEP)
+    env.reset(seed=0)
+    for _ in range(2):
+        _, _, _, truncated, _ = env.step(np.zeros((4096, 42)))
+    assert truncated.all()

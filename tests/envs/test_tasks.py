@@ -1,0 +1,81 @@
+"""Rewards point the right way."""
+
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+SEEDS = 20
+
+
+def returns(env, act):
+    """Return of the first episode of each environment."""
+    env.reset(seed=1)
+    total, running = np.zeros(env.num_envs), np.ones(env.num_envs, dtype=bool)
+    for _ in range(env.max_episode_steps):
+        _, reward, terminated, truncated, _ = env.step(act(env))
+        total += reward * running
+        running &= ~(terminated | truncated)
+    return total
+
+
+def beats(good, bad):
+    """Whether the mean of ``good`` is above that of ``bad`` by three standard errors."""
+    error = np.sqrt(good.var(ddof=1) / good.size + bad.var(ddof=1) / bad.size)
+    return good.mean() - bad.mean() > 3.0 * error
+
+
+def test_scripted_policy_beats_zero_and_random(env_id, make_vec):
+    env = make_vec(env_id, SEEDS, duration=None, autoreset_mode=AutoresetMode.DISABLED)
+    rng = np.random.default_rng(0)
+    scripted = returns(env, env.task.scripted_policy)
+    assert beats(scripted, returns(env, lambda env: np.zeros((SEEDS, 42))))
+    assert beats(scripted, returns(env, lambda env: rng.uniform(-1.0, 1.0, (SEEDS, 42))))
+
+
+def place(env, heads):
+    """Put the target of each environment at given distances from the head [m]."""
+    env.goal[:, 0] = env.pose.head[:, 0] + heads
+    env.goal[:, 1] = env.pose.head[:, 2]
+
+
+def test_reaching_early_beats_reaching_late_and_hovering(make_vec):
+    """Three snakes come equally near: one at once, one late, one only almost and stays there."""
+    env = make_vec("elastica_gym/SnakeReach-v0", 3, duration=5.0, autoreset_mode=AutoresetMode.DISABLED)
+    env.reset(seed=[0, 0, 0])
+    place(env, 0.5)
+    total, running = np.zeros(3), np.ones(3, dtype=bool)
+    for step in range(env.max_episode_steps):
+        if step == 5:
+            place(env, np.array([0.0, 0.06, 0.06]))
+        if step == 80:
+            place(env, np.array([0.0, 0.0, 0.06]))
+        _, reward, terminated, truncated, info = env.step(np.zeros((3, 42)))
+        total += reward * running
+        running &= ~(terminated | truncated)
+    assert info["is_success"].tolist() == [True, True, False]
+    assert total[0] > total[1] > total[2]
+    assert total[1] - total[2] > 5.0
+
+
+def test_targets_fill_the_ring_uniformly(make_vec):
+    env = make_vec("elastica_gym/SnakeReach-v0", 2000)
+    env.reset(seed=0)
+    away = (env.goal - env.pose.centre[:, [0, 2]]) / env.body.senses.length
+    radius, bearing = np.hypot(*away.T), np.arctan2(*away.T)
+    assert radius.min() >= 0.5 and radius.max() <= 1.5
+    # uniform over area and bearing: quartiles of each
+    np.testing.assert_allclose(np.quantile((radius**2 - 0.25) / 2.0, [0.25, 0.5, 0.75]), [0.25, 0.5, 0.75], atol=0.04)
+    np.testing.assert_allclose(np.quantile(bearing / np.pi, [0.25, 0.5, 0.75]), [-0.5, 0.0, 0.5], atol=0.08)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_forward_pays_for_the_way_along_the_initial_heading(make_vec, sign):
+    env = make_vec("elastica_gym/SnakeForward-v0", 2)
+    env.reset(seed=3)
+    heading = env.goal[:, :2]
+    n = env.body.rods[0].n_elements
+    env.state.v[:] = 0.0
+    env.state.v[:, 0, 1 : n + 2], env.state.v[:, 2, 1 : n + 2] = sign * heading[:, :1], sign * heading[:, 1:]
+    _, _, _, _, info = env.step(np.zeros((2, 42)))
+    assert (sign * info["reward_forward"] > 0.0).all()
+    np.testing.assert_allclose(info["reward_forward"], 10.0 * info["distance"] / 0.35, rtol=1e-9)
