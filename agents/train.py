@@ -97,7 +97,7 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     values = hyperparameters.load(arguments.algo, arguments.env, config=arguments.config, overrides=overrides)
     config = {
         **{key: value for key, value in dataclasses.asdict(arguments).items() if key not in _NOT_IN_CONFIG},
-        "steps": arguments.steps or (None if arguments.minutes else int(values["n_timesteps"])),
+        "steps": int(values["n_timesteps"]) if arguments.steps is arguments.minutes is None else arguments.steps,
         "hyperparameters": values,
         "versions": {"python": platform.python_version(), **_versions()},
     }
@@ -127,7 +127,7 @@ def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
 
 def _check(config: dict[str, Any]) -> None:
     choose("environment", config["env"], environment_ids())
-    lowest = {"steps": 1, "minutes": 0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1, "recordings": 0}
+    lowest = {"steps": 1, "minutes": 0.0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1, "recordings": 0}
     for key, bound in lowest.items():
         if config[key] is not None and config[key] < bound:
             raise BadInputError(f"{key} must be at least {bound}, got {config[key]}")

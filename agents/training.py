@@ -31,7 +31,7 @@ from agents.progress import ProgressDisplay
 from agents.run_files import EVALUATIONS, METRICS, Table
 from agents.vec_env import BatchVecEnv, make_batch_vec_env
 
-SAC_STEPS_PER_ITERATION = 1024
+SAC_STEPS_PER_ITERATION = 512
 """Environment steps that make an iteration of SAC, which updates its networks every few steps."""
 
 REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")

@@ -1,0 +1,45 @@
+"""Plot learning curves over seeds: ``python -m agents.plot_curves --env ID --runs runs/SnakeForward-v0/ppo-*``."""
+
+import dataclasses
+from pathlib import Path
+
+from agents.checks import BadInputError, choose, environment_ids, make_folder, require_extra, run_command
+
+
+@dataclasses.dataclass
+class PlotArguments:
+    """Plot the mean over several runs of one environment, and the range between the lowest and the highest."""
+
+    env: str
+    """Environment id that all runs were trained on."""
+    runs: list[Path]
+    """Folders of the runs."""
+    out: Path = Path("learning_curves.png")
+    """PNG file to write."""
+
+
+def main() -> None:
+    """Run the command line."""
+    require_extra("train")
+    import tyro
+
+    arguments = tyro.cli(PlotArguments)
+    choose("environment", arguments.env, environment_ids())
+    from agents import curves
+    from agents.checkpoints import write_atomically
+    from agents.policies import read_config
+    from agents.run_files import METRICS, read_table
+
+    for run in arguments.runs:
+        if (trained_on := read_config(run)["env"]) != arguments.env:
+            raise BadInputError(f"The run {run} was trained on {trained_on}, not on {arguments.env}.")
+        if len(read_table(run / METRICS).get("steps", [])) < 2:
+            raise BadInputError(f"The run {run} has no curve yet: {run / METRICS} has less than two rows.")
+    make_folder(arguments.out.parent)
+    figure = curves.plot_runs(arguments.runs, f"{arguments.env}, {len(arguments.runs)} runs")
+    write_atomically(arguments.out, lambda path: curves.save(figure, path))
+    print(f"Wrote {arguments.out}")
+
+
+if __name__ == "__main__":
+    run_command(main)

@@ -1,0 +1,127 @@
+"""What users get wrong: one line that names it and says what would do, a status that is not 0, nothing lost."""
+
+import importlib.metadata
+import resource
+import subprocess
+import sys
+
+import pytest
+
+from agents import checks, policies
+from agents.checkpoints import checkpoint_folders, find_damage
+from tests.agents.commands import FORWARD, ROOT, SMALL_PPO, environment, run
+
+
+def refused(module: str, *args: object, status: int = 2) -> str:
+    output = run(module, *args, status=status)
+    assert "Traceback" not in output
+    assert output.count("\nerror: ") + output.startswith("error: ") == 1
+    return output
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs") / "run"
+    run("agents.train", "--steps", 40, "--folder", folder, *SMALL_PPO, "--evaluations", 0)
+    return folder
+
+
+def test_unknown_environment():
+    assert f"did you mean '{FORWARD}'" in refused("agents.train", "--env", "elastica_gym/SnakeForwards-v0")
+    assert f"did you mean '{FORWARD}'" in refused("agents.evaluate", "--policy", "zero", "--env", "SnakeForward-v0")
+
+
+def test_unknown_algorithm():
+    assert "'pppo'; did you mean 'ppo'? Valid: ppo, sac." in refused("agents.train", "--algo", "pppo")
+
+
+def test_unknown_hyperparameter():
+    assert "'learning_rat'; did you mean 'learning_rate'" in refused("agents.train", "--set", "learning_rat=0.1")
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (("--set", "learning_rate=fast"), "learning_rate must be a number or 'lin_<number>', got 'fast'"),
+        (("--set", "gamma"), "Expected KEY=VALUE, got 'gamma'"),
+        (("--set", "policy=Mlp"), "Stable-Baselines3 refuses the hyperparameters"),
+        (("--set", "env_kwargs={sim_dt: 1.0}"), "The environment refuses its arguments: the time step"),
+        (("--n-envs", "0"), "num_envs must be from 1 to 4096"),
+        (("--steps", "0"), "steps must be at least 1, got 0"),
+    ],
+)
+def test_values_that_cannot_be(option, message, tmp_path):
+    assert message in refused("agents.train", "--folder", tmp_path / "run", *option)
+
+
+def test_unknown_policy():
+    assert "'scriptd'; did you mean 'scripted'" in refused("agents.evaluate", "--policy", "scriptd", "--env", FORWARD)
+    assert "either --run DIR or --policy" in refused("agents.evaluate", "--env", FORWARD)
+
+
+def test_missing_or_old_packages(monkeypatch):
+    script = "import importlib.metadata as m, runpy, sys; sys.argv = ['train']; old = m.version\n" \
+        "def version(name):\n  if name == 'torch': raise m.PackageNotFoundError(name)\n  return old(name)\n" \
+        "m.version = version; runpy.run_module('agents.train', run_name='__main__')"  # fmt: skip
+    done = subprocess.run([sys.executable, "-c", script], env=environment(), cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr == "error: torch is not installed: pip install --upgrade 'elastica-gym[train]'\n"
+
+    monkeypatch.setattr(importlib.metadata, "version", lambda package: "0.25.1rc2")
+    assert (
+        checks.missing_extra("viz")
+        == "rerun-sdk 0.25.1rc2 is older than 0.26: pip install --upgrade 'elastica-gym[viz]'"
+    )
+
+
+def test_unwritable_folder():
+    assert "Cannot write into the folder /proc/runs" in refused("agents.train", "--folder", "/proc/runs")
+    output = refused("agents.evaluate", "--policy", "zero", "--env", FORWARD, "--record", "/proc/rec")
+    assert "Cannot write into the folder /proc/rec" in output
+
+
+def test_a_run_is_not_overwritten(finished):
+    before = (finished / "model.zip").read_bytes()
+    assert "has a run already" in refused("agents.train", "--folder", finished)
+    assert (finished / "model.zip").read_bytes() == before
+
+
+def test_full_disk_keeps_the_last_checkpoint(finished):
+    """A limit on the size of files stands for the disk: what does not fit is refused in the middle of a write."""
+    before = checkpoint_folders(finished / "checkpoints")
+
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+
+    output = run("agents.train", "--resume", finished, "--steps", 80, status=1, preexec_fn=limit)
+    assert "Traceback" not in output
+    assert "File too large" in output
+    assert f"python -m agents.train --resume {finished}" in output
+    assert checkpoint_folders(finished / "checkpoints") == before
+    assert find_damage(before[-1]) is None
+
+
+def test_nothing_to_resume(tmp_path):
+    assert "is not the folder of a run" in refused("agents.train", "--resume", tmp_path / "nowhere")
+    (tmp_path / "config.yml").write_text("env: [")
+    assert "config.yml is damaged" in refused("agents.train", "--resume", tmp_path)
+    assert "config.yml is damaged" in refused("agents.evaluate", "--run", tmp_path)
+
+
+@pytest.mark.parametrize("content", [b"", b"PK", b"no zip"])
+def test_damaged_model(tmp_path, content):
+    (tmp_path / "config.yml").write_text(
+        f"{{env: {FORWARD}, algo: ppo, seed: 0, hyperparameters: {{normalize: true}}}}"
+    )
+    (tmp_path / "model.zip").write_bytes(content)
+    with pytest.raises(checks.BadInputError, match=r"model.zip is missing or damaged"):
+        policies.load_run(tmp_path)
+
+
+def test_damaged_statistics(finished, tmp_path):
+    for name in ("config.yml", "model.zip"):
+        (tmp_path / name).write_bytes((finished / name).read_bytes())
+    with pytest.raises(checks.BadInputError, match=r"vecnormalize.pkl are missing or damaged"):
+        policies.load_run(tmp_path)
+    (tmp_path / "vecnormalize.pkl").write_bytes((finished / "vecnormalize.pkl").read_bytes()[:100])
+    assert "vecnormalize.pkl are missing or damaged" in refused("agents.evaluate", "--run", tmp_path)

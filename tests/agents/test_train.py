@@ -1,0 +1,99 @@
+import csv
+
+import numpy as np
+import pytest
+import torch
+import yaml
+from stable_baselines3 import PPO, SAC
+from stable_baselines3.common.vec_env import VecNormalize
+
+from agents import hyperparameters
+from agents.policies import load_run
+from agents.vec_env import make_batch_vec_env
+from tests.agents.commands import FORWARD, REACH, SMALL, SMALL_EPISODES, SMALL_PPO, run
+
+
+@pytest.fixture(scope="module")
+def ppo_run(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs") / "ppo"
+    output = run("agents.train", "--env", FORWARD, "--steps", 200, "--folder", folder, *SMALL_PPO, "gamma=0.9",
+                 "learning_rate=lin_0.001", "--recordings", 1)  # fmt: skip
+    assert f"python -m agents.evaluate --run {folder}" in output
+    return folder
+
+
+def test_a_run_leaves_what_it_should(ppo_run):
+    names = {path.name for path in ppo_run.iterdir()}
+    assert names == {"config.yml", "model.zip", "vecnormalize.pkl", "metrics.csv", "evaluations.csv",
+                     "learning_curve.png", "checkpoints", "recordings"}  # fmt: skip
+    config = yaml.safe_load((ppo_run / "config.yml").read_text())
+    assert config["env"] == FORWARD and config["algo"] == "ppo" and config["seed"] == 0 and config["steps"] == 200
+    assert config["hyperparameters"]["gamma"] == 0.9 and config["hyperparameters"]["n_envs"] == 2
+    assert "torch" in config["versions"]
+    assert (ppo_run / "learning_curve.png").read_bytes().startswith(b"\x89PNG")
+    assert len(list((ppo_run / "recordings").glob("*.rrd"))) == 1
+
+
+def test_tables_of_a_run(ppo_run):
+    rows = list(csv.DictReader((ppo_run / "metrics.csv").open()))
+    assert [int(row["steps"]) for row in rows] == [40, 80, 120, 160, 200]
+    assert float(rows[0]["length"]) == 10
+    assert float(rows[1]["learning_rate"]) == pytest.approx(0.001 * 0.6)
+    last = rows[-1]
+    terms = sum(float(value) for key, value in last.items() if key.startswith("reward_"))
+    assert terms == pytest.approx(float(last["return"]), abs=1e-4)
+    evaluations = list(csv.DictReader((ppo_run / "evaluations.csv").open()))
+    assert [int(row["steps"]) for row in evaluations] == [0, 200]
+
+
+def test_the_loop_does_what_stable_baselines3_does(ppo_run):
+    values = yaml.safe_load((ppo_run / "config.yml").read_text())["hyperparameters"]
+    env = VecNormalize(
+        make_batch_vec_env(FORWARD, n_envs=2, **values["env_kwargs"]), **hyperparameters.normalize_arguments(values)
+    )
+    torch.set_num_threads(1)
+    model = PPO(env=env, seed=0, device="cpu", **hyperparameters.algorithm_arguments(values)).learn(200)
+    trained, _ = load_run(ppo_run)
+    for name, value in model.policy.state_dict().items():
+        assert torch.equal(value, trained.model.policy.state_dict()[name]), name
+    np.testing.assert_array_equal(env.obs_rms.mean, trained.normalization.obs_rms.mean)
+
+
+def test_evaluation_of_a_run(ppo_run, tmp_path):
+    output = run("agents.evaluate", "--run", ppo_run, "--episodes", 3, "--json", tmp_path / "out" / "numbers.json")
+    assert "reward: forward" in output and "success rate" in output and "diverged" in output
+    assert "return_mean" in (tmp_path / "out" / "numbers.json").read_text()
+
+
+def test_curves_of_several_runs(ppo_run, tmp_path):
+    run("agents.plot_curves", "--env", FORWARD, "--runs", ppo_run, ppo_run, "--out", tmp_path / "curves.png")
+    assert (tmp_path / "curves.png").read_bytes().startswith(b"\x89PNG")
+    assert REACH in run("agents.plot_curves", "--env", REACH, "--runs", ppo_run, status=2)
+
+
+def test_a_minute_is_a_budget(tmp_path):
+    folder = tmp_path / "run"
+    run("agents.train", "--minutes", 0.02, "--folder", folder, *SMALL_PPO, "learning_rate=lin_0.001")
+    rows = list(csv.DictReader((folder / "metrics.csv").open()))
+    assert 0.0 < float(rows[-1]["seconds"]) < 1.2
+    rates = [float(row["learning_rate"]) for row in rows]
+    assert rates == sorted(rates, reverse=True) and rates[-1] < 0.8 * 0.001
+
+
+def test_sac_is_resumed_with_its_replay_buffer(tmp_path):
+    folder = tmp_path / "run"
+    run("agents.train", "--algo", "sac", "--env", REACH, "--steps", 300, "--folder", folder, *SMALL, "--set",
+        "learning_starts=100", "gradient_steps=1", "batch_size=16", "buffer_size=600", SMALL_EPISODES)  # fmt: skip
+    assert _filled(folder) == 256
+    before = load_run(folder)[0].model
+    assert isinstance(before, SAC)
+    run("agents.train", "--resume", folder, "--steps", 800)
+    assert _filled(folder) == 300
+    after = load_run(folder)[0].model
+    assert after.num_timesteps == 1024 and after._n_updates > before._n_updates > 100
+
+
+def _filled(folder) -> int:
+    newest = max((folder / "checkpoints").iterdir())
+    with np.load(newest / "replay_buffer.npz") as saved:
+        return len(saved["rewards"])
