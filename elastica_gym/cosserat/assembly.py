@@ -43,7 +43,10 @@ def build_model(
     counts = np.array([rod.n_elements for rod in rods])
     first = LEAD + np.concatenate([[0], np.cumsum(counts + 1)[:-1]])
     occupied = int(np.sum(counts + 1))
-    slots = -(-(LEAD + occupied) // BLOCK) * BLOCK + BLOCK
+    blocks = -(-(LEAD + occupied) // BLOCK) + 1
+    # with an odd number of blocks to a row, the rows that a stage works on at a time lie in different
+    # sets of the cache and at different offsets in their pages, which the processor would mistake for equal
+    slots = BLOCK * (blocks | 1)
     fields: dict[str, Any] = {name: aligned_zeros((slots,)) for name in _SCALAR}
     fields |= {name: aligned_zeros((rows, slots)) for name, rows in _ROWS.items()}
     fields["inv_rest_length"][:] = fields["inv_rest_voronoi_length"][:] = 1.0
@@ -52,11 +55,12 @@ def build_model(
     return Model(
         first_slot=first.astype(np.int64), n_elements=counts.astype(np.int64), **fields,
         gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_viscous=bool(fields["viscosity"].any()),
-        activation_time=float(activation_time), planes=_plane_table(planes), waves=_wave_table(waves, rods, first, slots),
+        activation_time=float(activation_time), planes=_plane_table(planes),
+        waves=_wave_table(waves, rods, first, slots),
     )  # fmt: skip
 
 
-_SCALAR = ("rest_length", "inv_rest_length", "rest_voronoi_length", "inv_rest_voronoi_length", "section",
+_SCALAR = ("rest_length", "inv_rest_length", "rest_voronoi_length", "inv_rest_voronoi_length", "volume_root",
            "mass", "inv_mass", "damping_rate")  # fmt: skip
 _ROWS = {"shear": 3, "bend": 3, "inertia": 3, "inv_inertia": 3, "share": 2, "weight": 2, "viscosity": 2}
 
@@ -71,7 +75,7 @@ def _lay_out(fields: dict[str, Array], rod: Rod, start: int) -> None:
     for name, where, value in (
         ("mass", nodes, m), ("inv_mass", nodes, 1.0 / m), ("damping_rate", nodes, rod.damping_rate),
         ("rest_length", elements, rod.rest_length), ("inv_rest_length", elements, 1.0 / rod.rest_length),
-        ("section", elements, rod.radius**2 * rod.rest_length),
+        ("volume_root", elements, rod.radius * np.sqrt(rod.rest_length)),
         ("shear", elements, rod.shear_stiffness), ("inertia", elements, rod.inertia),
         ("inv_inertia", elements, 1.0 / rod.inertia), ("share", elements, share),
         ("weight", elements, np.stack([m[:-1], m[1:]]) / (m[:-1] + m[1:])),

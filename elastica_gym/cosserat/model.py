@@ -2,20 +2,23 @@
 
 All arrays are C-contiguous float64 unless said otherwise, in SI units. B is the number of
 environments. Rods stand one after another along the last axis, which has L slots: first an empty
-one (``LEAD``), then for a rod of n elements n + 1 slots. Its nodes use all of them; its elements the
-first n and its Voronoi points (between elements k and k + 1) the first n - 1. What is left over,
-the *ghosts*, carries zero stiffness, zero mass and zero inverse mass, so that every stage runs
-over all slots without a branch and no rod feels its neighbour. The slots are padded to a multiple
-of ``BLOCK``, so that loops have no remainder, and one empty block follows for reading k + 1.
+block (``LEAD``, for reading k - 1), then for a rod of n elements n + 1 slots. Its nodes use all of
+them; its elements the first n and its Voronoi points (between elements k and k + 1) the first n - 1.
+What is left over, the *ghosts*, carries zero stiffness, zero mass and zero inverse mass, so that
+every stage runs over all slots without a branch and no rod feels its neighbour. The slots are padded
+to a multiple of ``BLOCK``, so that loops have no remainder and start at a cache line, and at least
+one empty block follows for reading k + 1.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-LEAD = 1
 BLOCK = 8
+LEAD = BLOCK
+SCRATCH = 15
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -72,8 +75,8 @@ class Model(NamedTuple):
     """Voronoi length at rest D^ [m], (L,)"""
     inv_rest_voronoi_length: Array
     """1 / D^ [1/m], one at ghosts, (L,)"""
-    section: Array
-    """Element volume over pi, the square of the radius times the length [m^3], (L,)"""
+    volume_root: Array
+    """Square root of element volume over pi, r sqrt(l) [m^(3/2)], (L,)"""
     shear: Array
     """Diagonal of the shear and stretch stiffness S [N], (3, L)"""
     bend: Array
@@ -108,7 +111,7 @@ class Model(NamedTuple):
 
 
 class State(NamedTuple):
-    """What a step changes. The first nine fields are the state proper, the rest is derived from it."""
+    """What a step changes. The first seven fields are the state proper, the rest is derived from it."""
 
     x: Array
     """Node position [m], lab frame, (B, 3, L)"""
@@ -130,23 +133,14 @@ class State(NamedTuple):
     """Element radius r at constant volume [m], (B, L)"""
     kappa: Array
     """Curvature and twist [1/m], material frame, (B, 3, L)"""
-    sigma: Array
-    """Shear and stretch strain, material frame, (B, 3, L)"""
-    stress: Array
-    """Internal force n = Q^T S (sigma - sigma^) / e [N], lab frame, (B, 3, L)"""
-    moment: Array
-    """tau_L / E^3 [N m], material frame, (B, 3, L)"""
-    transport: Array
-    """kappa x tau_L D^ / E^3 [N m], material frame, (B, 3, L)"""
     force: Array
     """Net force on nodes F + F_ext [N], lab frame, (B, 3, L)"""
     torque: Array
     """Net torque on elements T + T_ext [N m], material frame, (B, 3, L)"""
     normal_force: Array
     """Weight that the planes carry, by element, sum over planes [N], (B, L)"""
-    contact: Array
-    """Scratch of the plane: force on the element, axial direction in lab and material frame,
-    friction capacities, (B, 11, L)"""
+    scratch: Array
+    """What the stages of a step hand on to each other, (B, SCRATCH, L)"""
     decay: Array
     """exp(-c dt) by node and element, (B, L)"""
 
@@ -185,7 +179,7 @@ def make_state(model: Model, n_envs: int = 1) -> State:
     """
     slots = model.mass.size
     vector, scalar = (n_envs, 3, slots), (n_envs, slots)
-    shapes = {"Q": (n_envs, 3, 3, slots), "time": (n_envs,), "contact": (n_envs, 11, slots),
+    shapes = {"Q": (n_envs, 3, 3, slots), "time": (n_envs,), "scratch": (n_envs, SCRATCH, slots),
               "length": scalar, "radius": scalar, "normal_force": scalar, "decay": scalar}
     state = State(*(aligned_zeros((n_envs,), np.int64) if name == "step" else aligned_zeros(shapes.get(name, vector))
                     for name in State._fields))
@@ -205,4 +199,4 @@ def make_control(model: Model, n_envs: int = 1) -> Control:
 def _assert_disjoint(arrays: State | Control) -> None:
     """Assert what the stages promise the compiler: no two arrays overlap."""
     spans = sorted((a.ctypes.data, a.ctypes.data + a.nbytes) for a in arrays)
-    assert all(end <= start for (_, end), (start, _) in zip(spans, spans[1:], strict=False))
+    assert all(end <= start for (_, end), (start, _) in pairwise(spans))

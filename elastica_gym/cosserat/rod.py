@@ -139,7 +139,7 @@ class Rod:
                              "choose one that is perpendicular to the rod")  # fmt: skip
         d1 /= size
         directors = np.stack([d1, np.cross(tangents, d1, axis=0), tangents])
-        return cls(position=nodes, directors=directors, radius=radius, **material)
+        return cls(position=nodes, directors=directors, radius=np.asarray(radius, dtype=np.float64), **material)
 
     @property
     def n_elements(self) -> int:

@@ -5,6 +5,10 @@ to overlap, without which LLVM cannot vectorise a loop over more than a handful 
 inlined into its caller by LLVM, which keeps dozens of array descriptors out of the call. Numba has
 the first only as a flag of its compiler pipeline, so a pipeline of our own sets it.
 
+A processor keeps some hundred instructions in flight, and a loop is as fast as it can overlap its
+turns: a long chain of dependent operations, such as an inverse root followed by a polynomial, makes
+a stage of its own with a short body, rather than a part of a long one.
+
 An *entry* is what Python calls. Its machine code is kept in a folder keyed by everything that
 decides what it is: this package's version, the text of all kernels, Numba's version and the CPU.
 Numba's own cache looks at the file of the entry alone and would load it stale after a change to a
@@ -20,7 +24,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import llvmlite.binding
 import numba
@@ -31,12 +35,15 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
 
+from ..model import LEAD
+
 CACHE_VARIABLE = "ELASTICA_GYM_CACHE_DIR"
 KERNELS = Path(__file__).parent
 
 # Slots are counted with unsigned integers: a signed index may be negative, which Numba's wrap-around
 # must then handle, and loops do not vectorise where LLVM cannot prove that it is not.
 ONE = np.uint64(1)
+FIRST = np.uint64(LEAD)
 
 # contraction into multiply-adds is all that is relaxed: reassociation would cost reproducibility
 # (and nothing is allocated, so that arrays need no reference counts: they would take half of the step)
@@ -157,7 +164,7 @@ class _EntryLocator:
 
 
 class _EntryCacheImpl(CompileResultCacheImpl):
-    _locator_classes = [_EntryLocator]
+    _locator_classes: ClassVar = [_EntryLocator]
 
 
 class _EntryCache(FunctionCache):

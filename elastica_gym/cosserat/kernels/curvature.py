@@ -1,25 +1,14 @@
 """Bending and twist: curvature at Voronoi points and the couples it causes."""
 
-from .compiler import ONE, stage
+from .compiler import FIRST, ONE, stage
 from .roots import inverse_sqrt
 from .rotations import half_angle_over_sine
 
 
 @stage
-def curvature(
-    n, Q, length, rest_voronoi_length, inv_rest_voronoi_length, B, rest_kappa, rate, target,
-    couple, kappa, moment, transport,
-):  # fmt: skip
-    """Compute kappa, tau_L/E^3 and kappa x tau_L D^/E^3 (Gazzola et al. 2018, eq. 2.21); activate the muscles.
-
-    Q[k+1] = exp(-D^ [kappa]x) Q[k]. With a the axial vector of R = Q[k+1] Q[k]^T and c its cosine,
-    kappa = -(theta/|a|) a / D^. With h = cos(theta/2), theta/|a| is (b/sin b)/h, b = theta/2, where
-    1/h^2 is 2/(1 + c), and near a half turn the better conditioned 2 (1 - c)/|a|^2.
-
-    The muscle couple joins tau_L, so it acts equally and oppositely on the two elements it joins. It
-    approaches its target by the fraction ``rate`` a step.
-    """
-    for k in range(n):
+def relative_rotation(n, Q, axis, cosine):
+    """Compute the axial vector a of R = Q[k+1] Q[k]^T, and the cosine of its angle."""
+    for k in range(FIRST, n):
         j = k + ONE
         p00, p01, p02 = Q[0][0][k], Q[0][1][k], Q[0][2][k]
         p10, p11, p12 = Q[1][0][k], Q[1][1][k], Q[1][2][k]
@@ -30,33 +19,53 @@ def curvature(
         R00 = q00 * p00 + q01 * p01 + q02 * p02
         R11 = q10 * p10 + q11 * p11 + q12 * p12
         R22 = q20 * p20 + q21 * p21 + q22 * p22
-        a0 = 0.5 * ((q20 * p10 + q21 * p11 + q22 * p12) - (q10 * p20 + q11 * p21 + q12 * p22))
-        a1 = 0.5 * ((q00 * p20 + q01 * p21 + q02 * p22) - (q20 * p00 + q21 * p01 + q22 * p02))
-        a2 = 0.5 * ((q10 * p00 + q11 * p01 + q12 * p02) - (q00 * p10 + q01 * p11 + q02 * p12))
+        axis[0][k] = 0.5 * ((q20 * p10 + q21 * p11 + q22 * p12) - (q10 * p20 + q11 * p21 + q12 * p22))
+        axis[1][k] = 0.5 * ((q00 * p20 + q01 * p21 + q02 * p22) - (q20 * p00 + q21 * p01 + q22 * p02))
+        axis[2][k] = 0.5 * ((q10 * p00 + q11 * p01 + q12 * p02) - (q00 * p10 + q01 * p11 + q02 * p12))
+        cosine[k] = 0.5 * (R00 + R11 + R22) - 0.5
 
-        c = 0.5 * (R00 + R11 + R22) - 0.5
-        c = c if c < 1.0 else 1.0
+
+@stage
+def logarithm(n, inv_rest_voronoi_length, cosine, kappa):
+    """Turn the axial vectors a in ``kappa`` into curvatures: Q[k+1] = exp(-D^ [kappa]x) Q[k].
+
+    With c the cosine, kappa = -(theta/|a|) a / D^. With h = cos(theta/2), theta/|a| is (b/sin b)/h,
+    b = theta/2, where 1/h^2 is 2/(1 + c), and near a half turn the better conditioned 2 (1 - c)/|a|^2.
+    """
+    for k in range(FIRST, n):
+        a0, a1, a2 = kappa[0][k], kappa[1][k], kappa[2][k]
+        c = cosine[k] if cosine[k] < 1.0 else 1.0
         a_squared = a0 * a0 + a1 * a1 + a2 * a2
         numerator = 2.0 * (1.0 - c) if c < 0.0 else 2.0
         denominator = a_squared if c < 0.0 else 1.0 + c
         inv_h = numerator * inverse_sqrt(numerator * denominator)
         h = 0.5 * (1.0 + c) * inv_h
         scale = -half_angle_over_sine(h) * inv_h * inv_rest_voronoi_length[k]
-        k0, k1, k2 = scale * a0, scale * a1, scale * a2
+        kappa[0][k], kappa[1][k], kappa[2][k] = scale * a0, scale * a1, scale * a2
 
+
+@stage
+def bending(
+    n, length, kappa, rest_voronoi_length, B, rest_kappa, rate, target, couple, moment, transport,
+):  # fmt: skip
+    """Compute tau_L/E^3 and kappa x tau_L D^/E^3 (Gazzola et al. 2018, eq. 2.21); activate the muscles.
+
+    The muscle couple joins tau_L, so it acts equally and oppositely on the two elements it joins. It
+    approaches its target by the fraction ``rate`` a step.
+    """
+    for k in range(FIRST, n):
+        j = k + ONE
+        k0, k1, k2 = kappa[0][k], kappa[1][k], kappa[2][k]
         m0 = couple[0][k] + rate * (target[0][k] - couple[0][k])
         m1 = couple[1][k] + rate * (target[1][k] - couple[1][k])
         m2 = couple[2][k] + rate * (target[2][k] - couple[2][k])
-        t0 = B[0][k] * (k0 - rest_kappa[0][k]) + m0
-        t1 = B[1][k] * (k1 - rest_kappa[1][k]) + m1
-        t2 = B[2][k] * (k2 - rest_kappa[2][k]) + m2
-
-        inv_E = 2.0 * rest_voronoi_length[k] / (length[k] + length[j])
-        inv_E3 = inv_E * inv_E * inv_E
-        t0, t1, t2 = t0 * inv_E3, t1 * inv_E3, t2 * inv_E3
         D = rest_voronoi_length[k]
+        inv_E = 2.0 * D / (length[k] + length[j])
+        inv_E3 = inv_E * inv_E * inv_E
+        t0 = (B[0][k] * (k0 - rest_kappa[0][k]) + m0) * inv_E3
+        t1 = (B[1][k] * (k1 - rest_kappa[1][k]) + m1) * inv_E3
+        t2 = (B[2][k] * (k2 - rest_kappa[2][k]) + m2) * inv_E3
         couple[0][k], couple[1][k], couple[2][k] = m0, m1, m2
-        kappa[0][k], kappa[1][k], kappa[2][k] = k0, k1, k2
         moment[0][k], moment[1][k], moment[2][k] = t0, t1, t2
         transport[0][k] = (k1 * t2 - k2 * t1) * D
         transport[1][k] = (k2 * t0 - k0 * t2) * D

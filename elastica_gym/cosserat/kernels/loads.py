@@ -2,7 +2,7 @@
 
 from math import cos, sin
 
-from .compiler import ONE, stage
+from .compiler import FIRST, ONE, stage
 
 
 @stage
@@ -13,20 +13,20 @@ def balance(n, stress, moment, transport, mass, gravity, force, torque):
     kappa x tau_L D^/E^3. Adds to the torques of strains.
     """
     g0, g1, g2 = gravity[0], gravity[1], gravity[2]
-    for k in range(n):
-        j = k + ONE
-        force[0][j] = stress[0][j] - stress[0][k] + mass[j] * g0
-        force[1][j] = stress[1][j] - stress[1][k] + mass[j] * g1
-        force[2][j] = stress[2][j] - stress[2][k] + mass[j] * g2
-        torque[0][j] += moment[0][j] - moment[0][k] + 0.5 * (transport[0][j] + transport[0][k])
-        torque[1][j] += moment[1][j] - moment[1][k] + 0.5 * (transport[1][j] + transport[1][k])
-        torque[2][j] += moment[2][j] - moment[2][k] + 0.5 * (transport[2][j] + transport[2][k])
+    for k in range(FIRST, n):
+        i = k - ONE
+        force[0][k] = stress[0][k] - stress[0][i] + mass[k] * g0
+        force[1][k] = stress[1][k] - stress[1][i] + mass[k] * g1
+        force[2][k] = stress[2][k] - stress[2][i] + mass[k] * g2
+        torque[0][k] += moment[0][k] - moment[0][i] + 0.5 * (transport[0][k] + transport[0][i])
+        torque[1][k] += moment[1][k] - moment[1][i] + 0.5 * (transport[1][k] + transport[1][i])
+        torque[2][k] += moment[2][k] - moment[2][i] + 0.5 * (transport[2][k] + transport[2][i])
 
 
 @stage
 def external(n, applied_force, applied_torque, force, torque):
     """Add the loads that Control holds."""
-    for k in range(n):
+    for k in range(FIRST, n):
         force[0][k] += applied_force[0][k]
         force[1][k] += applied_force[1][k]
         force[2][k] += applied_force[2][k]
@@ -38,17 +38,17 @@ def external(n, applied_force, applied_torque, force, torque):
 @stage
 def viscosity(n, v, w, length, nu, force, torque):
     """Subtract the documented damping: nu l times the mean nodal velocity, and nu_torque l w."""
-    for k in range(n):
+    for k in range(FIRST, n):
         # half of each element's force goes to each of its nodes; a ghost's nu is zero
-        j = k + ONE
-        a, b = 0.25 * nu[0][k] * length[k], 0.25 * nu[0][j] * length[j]
-        force[0][j] -= a * (v[0][k] + v[0][j]) + b * (v[0][j] + v[0][j + ONE])
-        force[1][j] -= a * (v[1][k] + v[1][j]) + b * (v[1][j] + v[1][j + ONE])
-        force[2][j] -= a * (v[2][k] + v[2][j]) + b * (v[2][j] + v[2][j + ONE])
-        c = nu[1][j] * length[j]
-        torque[0][j] -= c * w[0][j]
-        torque[1][j] -= c * w[1][j]
-        torque[2][j] -= c * w[2][j]
+        i, j = k - ONE, k + ONE
+        a, b = 0.25 * nu[0][i] * length[i], 0.25 * nu[0][k] * length[k]
+        force[0][k] -= a * (v[0][i] + v[0][k]) + b * (v[0][k] + v[0][j])
+        force[1][k] -= a * (v[1][i] + v[1][k]) + b * (v[1][k] + v[1][j])
+        force[2][k] -= a * (v[2][i] + v[2][k]) + b * (v[2][k] + v[2][j])
+        c = nu[1][k] * length[k]
+        torque[0][k] -= c * w[0][k]
+        torque[1][k] -= c * w[1][k]
+        torque[2][k] -= c * w[2][k]
 
 
 @stage
@@ -56,7 +56,7 @@ def wave(n, strength, phase, axis, sine, cosine, Q, torque):
     """Add a travelling wave of muscle couple at the angle ``phase`` = omega t (Gazzola et al. 2018, sec. 5.2)."""
     S, C = strength * sin(phase), strength * cos(phase)
     a0, a1, a2 = axis[0], axis[1], axis[2]
-    for k in range(n):
+    for k in range(FIRST, n):
         m = S * sine[k] + C * cosine[k]
         torque[0][k] += m * (Q[0][0][k] * a0 + Q[0][1][k] * a1 + Q[0][2][k] * a2)
         torque[1][k] += m * (Q[1][0][k] * a0 + Q[1][1][k] * a1 + Q[1][2][k] * a2)

@@ -5,7 +5,7 @@ net force, so it comes after every other load. n is the plane's normal, a the in
 of the element, b = a x n the direction it rolls in, N the force with which the plane carries it.
 """
 
-from .compiler import ONE, inline, stage
+from .compiler import FIRST, ONE, inline, stage
 from .roots import inverse_sqrt
 
 
@@ -26,78 +26,100 @@ def towards(direction, forward, backward):
 
 
 @stage
-def slip(
-    n, normal, origin, k_plane, nu_plane, surface_tol, slip_tol, mu, mu_static,
-    x, v, Q, w, radius, share, weight, force, torque,
-    push, axial, axial_material, hold, hold_rolling, normal_force,
+def touch(
+    n, normal, origin, k_plane, nu_plane, surface_tol, x, v, radius, share, weight, force,
+    response, carried, axial,
 ):  # fmt: skip
-    """Compute the plane's response and kinetic friction on each element.
-
-    Leaves the force on the element in ``push``, a in ``axial`` and in the material frame, the most
-    that static friction may be, s mu N, in ``hold`` and ``hold_rolling``, and adds N to ``normal_force``.
-    Returns how many elements stick at least in part.
-    """
+    """Compute the plane's response along n, the part of it that carries the element, N, and a."""
     n0, n1, n2 = normal[0], normal[1], normal[2]
     height = n0 * origin[0] + n1 * origin[1] + n2 * origin[2]
-    forward, backward, sideways = mu[0], mu[1], mu[2]
-    may_hold = mu_static[0] + mu_static[1] + mu_static[2]
-    static_sideways = mu_static[2]
-    inv_slip_tol = 1.0 / slip_tol
-    n_sticking = 0
-    for k in range(n):
+    for k in range(FIRST, n):
         j = k + ONE
+        s0, s1, p0, p1 = share[0][k], share[1][k], weight[0][k], weight[1][k]
         d0, d1, d2 = x[0][j] - x[0][k], x[1][j] - x[1][k], x[2][j] - x[2][k]
-        u0 = weight[0][k] * v[0][k] + weight[1][k] * v[0][j]
-        u1 = weight[0][k] * v[1][k] + weight[1][k] * v[1][j]
-        u2 = weight[0][k] * v[2][k] + weight[1][k] * v[2][j]
+        dn = n0 * d0 + n1 * d1 + n2 * d2
+        un = (
+            n0 * (p0 * v[0][k] + p1 * v[0][j])
+            + n1 * (p0 * v[1][k] + p1 * v[1][j])
+            + n2 * (p0 * v[2][k] + p1 * v[2][j])
+        )
         fn = (
-            n0 * (share[0][k] * force[0][k] + share[1][k] * force[0][j])
-            + n1 * (share[0][k] * force[1][k] + share[1][k] * force[1][j])
-            + n2 * (share[0][k] * force[2][k] + share[1][k] * force[2][j])
+            n0 * (s0 * force[0][k] + s1 * force[0][j])
+            + n1 * (s0 * force[1][k] + s1 * force[1][j])
+            + n2 * (s0 * force[2][k] + s1 * force[2][j])
         )
 
-        # response: carries the push, and resists penetration and approach
+        # carry the push, and resist penetration and approach
         r = radius[k]
-        centre = n0 * (x[0][k] + 0.5 * d0) + n1 * (x[1][k] + 0.5 * d1) + n2 * (x[2][k] + 0.5 * d2)
-        gap = centre - height - r
+        gap = n0 * x[0][k] + n1 * x[1][k] + n2 * x[2][k] + 0.5 * dn - height - r
         touching = 1.0 if gap <= surface_tol else 0.0
         # a ghost has no section
         touching = touching if r > 0.0 else 0.0
-        un = n0 * u0 + n1 * u1 + n2 * u2
         N = -fn if fn < 0.0 else 0.0
         N *= touching
         depth = gap if gap < 0.0 else 0.0
-        response = N - touching * (k_plane * depth + nu_plane * un)
+        response[k] = N - touching * (k_plane * depth + nu_plane * un)
+        carried[k] = N
 
-        # directions
-        dn = n0 * d0 + n1 * d1 + n2 * d2
         a0, a1, a2 = d0 - dn * n0, d1 - dn * n1, d2 - dn * n2
-        aa = a0 * a0 + a1 * a1 + a2 * a2
-        inv_a = inverse_sqrt(aa)
-        a0, a1, a2 = a0 * inv_a, a1 * inv_a, a2 * inv_a
+        inv_a = inverse_sqrt(a0 * a0 + a1 * a1 + a2 * a2)
+        axial[0][k], axial[1][k], axial[2][k] = a0 * inv_a, a1 * inv_a, a2 * inv_a
+
+
+@stage
+def slip(n, normal, v, Q, w, radius, weight, axial, axial_material, slip_axial, slip_rolling):
+    """Compute the velocity of the element's lowest point along a and b, and a in the material frame.
+
+    The point moves with the element and with its spin, W x (-r n) . b = -r W . a.
+    """
+    n0, n1, n2 = normal[0], normal[1], normal[2]
+    for k in range(FIRST, n):
+        j = k + ONE
+        p0, p1 = weight[0][k], weight[1][k]
+        u0, u1, u2 = p0 * v[0][k] + p1 * v[0][j], p0 * v[1][k] + p1 * v[1][j], p0 * v[2][k] + p1 * v[2][j]
+        a0, a1, a2 = axial[0][k], axial[1][k], axial[2][k]
         b0, b1, b2 = a1 * n2 - a2 * n1, a2 * n0 - a0 * n2, a0 * n1 - a1 * n0
         m0 = Q[0][0][k] * a0 + Q[0][1][k] * a1 + Q[0][2][k] * a2
         m1 = Q[1][0][k] * a0 + Q[1][1][k] * a1 + Q[1][2][k] * a2
         m2 = Q[2][0][k] * a0 + Q[2][1][k] * a1 + Q[2][2][k] * a2
+        slip_axial[k] = u0 * a0 + u1 * a1 + u2 * a2
+        slip_rolling[k] = u0 * b0 + u1 * b1 + u2 * b2 - radius[k] * (w[0][k] * m0 + w[1][k] * m1 + w[2][k] * m2)
+        axial_material[0][k], axial_material[1][k], axial_material[2][k] = m0, m1, m2
 
-        # slip velocities: the lowest point moves with the element and with its spin, W x (-r n) . b = -r W . a
-        va = u0 * a0 + u1 * a1 + u2 * a2
-        vb = u0 * b0 + u1 * b1 + u2 * b2 - r * (w[0][k] * m0 + w[1][k] * m1 + w[2][k] * m2)
+
+@stage
+def slide(
+    n, normal, slip_tol, mu, mu_static, slip_axial, slip_rolling, response, carried, radius, axial, axial_material,
+    push, hold, hold_rolling, torque, normal_force,
+):  # fmt: skip
+    """Compute kinetic friction, opposite to the slip, with the torque of its rolling part.
+
+    Leaves the force on the element, response included, in ``push``, and the most that static friction
+    may be, s mu N (without mu along a, where it depends on the push), in ``hold`` and ``hold_rolling``;
+    adds N to ``normal_force``. Returns how many elements stick at least in part.
+    """
+    n0, n1, n2 = normal[0], normal[1], normal[2]
+    forward, backward, sideways, static_sideways = mu[0], mu[1], mu[2], mu_static[2]
+    may_hold = mu_static[0] + mu_static[1] + mu_static[2]
+    inv_slip_tol = 1.0 / slip_tol
+    n_sticking = 0
+    for k in range(FIRST, n):
+        va, vb, N = slip_axial[k], slip_rolling[k], carried[k]
         inv_speed = inverse_sqrt(va * va + vb * vb)
         sa, sb = sticking(va, inv_slip_tol), sticking(vb, inv_slip_tol)
-
-        # kinetic friction, opposite to the slip, with the torque of its rolling part
         fa = -(1.0 - sa) * towards(va, forward, backward) * N * va * inv_speed
         fb = -(1.0 - sb) * sideways * N * vb * inv_speed
-        push[0][k] = response * n0 + fa * a0 + fb * b0
-        push[1][k] = response * n1 + fa * a1 + fb * b1
-        push[2][k] = response * n2 + fa * a2 + fb * b2
-        torque[0][k] -= r * fb * m0
-        torque[1][k] -= r * fb * m1
-        torque[2][k] -= r * fb * m2
 
-        axial[0][k], axial[1][k], axial[2][k] = a0, a1, a2
-        axial_material[0][k], axial_material[1][k], axial_material[2][k] = m0, m1, m2
+        a0, a1, a2 = axial[0][k], axial[1][k], axial[2][k]
+        b0, b1, b2 = a1 * n2 - a2 * n1, a2 * n0 - a0 * n2, a0 * n1 - a1 * n0
+        push[0][k] = response[k] * n0 + fa * a0 + fb * b0
+        push[1][k] = response[k] * n1 + fa * a1 + fb * b1
+        push[2][k] = response[k] * n2 + fa * a2 + fb * b2
+        arm = radius[k] * fb
+        torque[0][k] -= arm * axial_material[0][k]
+        torque[1][k] -= arm * axial_material[1][k]
+        torque[2][k] -= arm * axial_material[2][k]
+
         hold[k], hold_rolling[k] = sa * N, sb * static_sideways * N
         normal_force[k] += N
         n_sticking += 1 if (sa + sb) * N * may_hold > 0.0 else 0
@@ -115,7 +137,7 @@ def stick(
     """
     n0, n1, n2 = normal[0], normal[1], normal[2]
     forward, backward = mu_static[0], mu_static[1]
-    for k in range(n):
+    for k in range(FIRST, n):
         j = k + ONE
         f0 = share[0][k] * force[0][k] + share[1][k] * force[0][j]
         f1 = share[0][k] * force[1][k] + share[1][k] * force[1][j]
@@ -149,8 +171,8 @@ def stick(
 @stage
 def to_nodes(n, push, force):
     """Give half of each element's force to each of its nodes."""
-    for k in range(n):
-        j = k + ONE
-        force[0][j] += 0.5 * (push[0][k] + push[0][j])
-        force[1][j] += 0.5 * (push[1][k] + push[1][j])
-        force[2][j] += 0.5 * (push[2][k] + push[2][j])
+    for k in range(FIRST, n):
+        i = k - ONE
+        force[0][k] += 0.5 * (push[0][i] + push[0][k])
+        force[1][k] += 0.5 * (push[1][i] + push[1][k])
+        force[2][k] += 0.5 * (push[2][i] + push[2][k])

@@ -6,12 +6,12 @@ import numpy as np
 
 from ..model import BLOCK
 from .compiler import entry, inline
-from .curvature import curvature
+from .curvature import bending, logarithm, relative_rotation
 from .dynamics import dynamics
 from .kinematics import kinematics, orthonormalise
 from .loads import balance, external, viscosity, wave
-from .plane import slip, stick, to_nodes
-from .strains import strains
+from .plane import slide, slip, stick, to_nodes, touch
+from .strains import strains, stretch
 
 # steps between two corrections of the directors; powers of two make the test cheap
 ORTHONORMALISE_EVERY = 1024
@@ -36,49 +36,65 @@ def drift(model, state, i, n, h):
 
 
 @inline
-def evaluate(model, state, control, i, n, time, dt):
-    """Compute the net force and torque on environment i, in its present configuration."""
+def internal(model, state, control, i, n, dt):
+    """Compute the forces and torques of environment i's strains, and gravity."""
     m, s, c = model, state, control
     x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
-    force, torque = rows(s.force[i]), rows(s.torque[i])
-
-    # internal loads
-    strains(n, x, v, Q, w, m.rest_length, m.inv_rest_length, m.section, rows(c.rest_sigma[i]), rows(m.shear),
-            rows(m.inertia), s.length[i], s.radius[i], rows(s.sigma[i]), rows(s.stress[i]), torque)  # fmt: skip
+    force, torque, kappa = rows(s.force[i]), rows(s.torque[i]), rows(s.kappa[i])
+    stress, moment, transport = rows(s.scratch[i]), rows(s.scratch[i, 3:]), rows(s.scratch[i, 6:])
+    inv_length, cosine = s.scratch[i, 9], s.scratch[i, 10]
     rate = 1.0 - exp(-dt / m.activation_time) if m.activation_time > 0.0 else 1.0
-    curvature(n, Q, s.length[i], m.rest_voronoi_length, m.inv_rest_voronoi_length, rows(m.bend),
-              rows(c.rest_kappa[i]), rate, rows(c.couple[i]),
-              rows(s.couple[i]), rows(s.kappa[i]), rows(s.moment[i]), rows(s.transport[i]))  # fmt: skip
-    balance(n, rows(s.stress[i]), rows(s.moment[i]), rows(s.transport[i]), m.mass, m.gravity,
-            force, torque)  # fmt: skip
+
+    stretch(n, x, m.volume_root, s.length[i], inv_length, s.radius[i])
+    strains(n, x, v, Q, w, inv_length, m.rest_length, m.inv_rest_length, rows(c.rest_sigma[i]), rows(m.shear),
+            rows(m.inertia), stress, torque)  # fmt: skip
+    relative_rotation(n, Q, kappa, cosine)
+    logarithm(n, m.inv_rest_voronoi_length, cosine, kappa)
+    bending(n, s.length[i], kappa, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]), rate,
+            rows(c.couple[i]), rows(s.couple[i]), moment, transport)  # fmt: skip
+    balance(n, stress, moment, transport, m.mass, m.gravity, force, torque)
+
+
+@inline
+def applied(model, state, control, i, n, time):
+    """Add the loads on environment i that do not depend on other loads."""
+    m, s, c = model, state, control
+    force, torque = rows(s.force[i]), rows(s.torque[i])
     if m.is_loaded:
         external(n, rows(c.force[i]), rows(c.torque[i]), force, torque)
     if m.is_viscous:
-        viscosity(n, v, w, s.length[i], (m.viscosity[0], m.viscosity[1]), force, torque)
-
-    # travelling waves of muscle couple
+        viscosity(n, rows(s.v[i]), rows(s.w[i]), s.length[i], (m.viscosity[0], m.viscosity[1]), force, torque)
     for j in range(m.waves.ramp_time.size):
-        ramp = m.waves.ramp_time[j]
+        waves, ramp = m.waves, m.waves.ramp_time[j]
         strength = time / ramp if time < ramp else 1.0
-        wave(n, strength, m.waves.angular_frequency[j] * time, m.waves.axis[j], m.waves.sine[j],
-             m.waves.cosine[j], Q, torque)  # fmt: skip
+        wave(n, strength, waves.angular_frequency[j] * time, waves.axis[j], waves.sine[j], waves.cosine[j],
+             matrix(s.Q[i]), torque)  # fmt: skip
 
-    # planes, which answer to all of the above
-    s.normal_force[i, :] = 0.0
-    push, axial, axial_material = rows(s.contact[i]), rows(s.contact[i, 3:]), rows(s.contact[i, 6:])
-    hold, hold_rolling = s.contact[i, 9], s.contact[i, 10]
+
+@inline
+def ground(model, state, i, n):
+    """Add the response and friction of the planes to environment i, which answer to all other loads."""
+    m, s, p = model, state, model.planes
+    x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
+    force, torque, radius = rows(s.force[i]), rows(s.torque[i]), s.radius[i]
+    push, axial, axial_material = rows(s.scratch[i]), rows(s.scratch[i, 3:]), rows(s.scratch[i, 6:])
+    hold, hold_rolling, response, carried = s.scratch[i, 9], s.scratch[i, 10], s.scratch[i, 11], s.scratch[i, 12]
+    slip_axial, slip_rolling = s.scratch[i, 13], s.scratch[i, 14]
     share, weight = (m.share[0], m.share[1]), (m.weight[0], m.weight[1])
-    for j in range(m.planes.stiffness.size):
-        p = m.planes
-        n_sticking = slip(
-            n, p.normal[j], p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], p.slip_tolerance[j],
-            p.kinetic_friction[j], p.static_friction[j],
-            x, v, Q, w, s.radius[i], share, weight, force, torque,
-            push, axial, axial_material, hold, hold_rolling, s.normal_force[i])  # fmt: skip
+
+    s.normal_force[i, :] = 0.0
+    for j in range(p.stiffness.size):
+        normal = p.normal[j]
+        touch(n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, v, radius, share,
+              weight, force, response, carried, axial)  # fmt: skip
+        slip(n, normal, v, Q, w, radius, weight, axial, axial_material, slip_axial, slip_rolling)
+        n_sticking = slide(n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j],
+                           slip_axial, slip_rolling, response, carried, radius, axial, axial_material,
+                           push, hold, hold_rolling, torque, s.normal_force[i])  # fmt: skip
         to_nodes(n, push, force)
         if n_sticking > 0:
-            stick(n, p.normal[j], p.static_friction[j], s.radius[i], share, force,
-                  axial, axial_material, hold, hold_rolling, push, torque)  # fmt: skip
+            stick(n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
+                  push, torque)  # fmt: skip
             to_nodes(n, push, force)
 
 
@@ -96,7 +112,7 @@ def advance(model, state, control, first, last, dt, n_substeps):
 
     The half drifts of consecutive steps are one, within a call.
     """
-    n = np.uint64(BLOCK * (model.mass.size // BLOCK - 1))
+    n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
     for i in range(first, last):
         for k in range(model.mass.size):
             state.decay[i, k] = exp(-model.damping_rate[k] * dt)
@@ -104,7 +120,9 @@ def advance(model, state, control, first, last, dt, n_substeps):
 
         drift(model, state, i, n, 0.5 * dt)
         for step in range(n_substeps):
-            evaluate(model, state, control, i, n, start + (step + 0.5) * dt, dt)
+            internal(model, state, control, i, n, dt)
+            applied(model, state, control, i, n, start + (step + 0.5) * dt)
+            ground(model, state, i, n)
             kick(model, state, i, n, dt)
             drift(model, state, i, n, dt if step < n_substeps - 1 else 0.5 * dt)
             state.step[i] += 1
