@@ -159,14 +159,21 @@ def read_config(run: Path) -> dict[str, Any]:
 
 def load_model(path: Path, algo: str, **arguments: Any) -> Any:
     """Load a Stable-Baselines3 model; `arguments` go to its ``load``."""
-    import torch
-
-    # networks this small gain nothing from a second thread, and lose much where others use the machine as well
-    torch.set_num_threads(1)
+    use_one_thread()
     try:
         return algorithm_class(algo).load(path, device="cpu", **arguments)
     except Exception as error:  # a damaged archive fails in as many ways as there are bytes in it
         raise BadInputError(f"The model {path} is missing or damaged: {type(error).__name__}: {error}") from error
+
+
+def use_one_thread() -> None:
+    """Let torch compute on one thread.
+
+    Networks this small gain nothing from a second thread, and lose much where other processes keep it waiting.
+    """
+    import torch
+
+    torch.set_num_threads(1)
 
 
 def load_normalization(path: Path) -> Any:

@@ -1,5 +1,6 @@
 """What a person sees while an agent trains."""
 
+import math
 import time
 from types import TracebackType
 from typing import Self
@@ -37,8 +38,8 @@ class ProgressDisplay:
         self._bar.stop()
 
     def update(self, done: float, numbers: dict[str, float]) -> None:
-        """Show that the fraction `done` of the budget is spent, and `numbers`."""
-        text = "  ".join(f"{name} {_short(value)}" for name, value in numbers.items())
+        """Show that the fraction `done` of the budget is spent, and those of `numbers` that are known already."""
+        text = "  ".join(f"{name} {_short(value)}" for name, value in numbers.items() if math.isfinite(value))
         self._bar.update(self._task, completed=min(done, 1.0), description=text)
         if not self._console.is_terminal and time.monotonic() - self._last_line > SECONDS_BETWEEN_LINES:
             self._last_line = time.monotonic()

@@ -69,10 +69,13 @@ def main() -> None:
     print(f"Training {config['algo']} on {config['env']}, seed {config['seed']}, into {folder}")
     try:
         finished = training.run()
-    except OSError as error:
+    except (OSError, KeyboardInterrupt) as error:
+        what = (
+            "interrupted" if isinstance(error, KeyboardInterrupt) else f"{error.strerror}: {error.filename or folder}"
+        )
         kept = training.last_checkpoint
-        hint = f"The checkpoint {kept} is whole: make room and go on with {_resume_command(folder)}" if kept else ""
-        fail(f"{error.strerror or error}: {error.filename or folder}. {hint}", status=1)
+        hint = f". The checkpoint {kept} is whole; continue with: {_resume_command(folder)}" if kept else ""
+        fail(what + hint, status=130 if what == "interrupted" else 1)
     if not finished:
         print(f"Saved. Continue with: {_resume_command(folder)}")
         raise SystemExit(130)

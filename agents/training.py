@@ -26,7 +26,7 @@ from agents.checkpoints import checkpoint_folders, last_whole_checkpoint, write_
 from agents.checks import BadInputError
 from agents.evaluate import evaluate, record
 from agents.hyperparameters import algorithm_arguments, algorithm_class, normalize_arguments
-from agents.policies import TrainedPolicy, load_model, load_normalization
+from agents.policies import TrainedPolicy, load_model, load_normalization, use_one_thread
 from agents.progress import ProgressDisplay
 from agents.run_files import EVALUATIONS, METRICS, Table
 from agents.vec_env import BatchVecEnv, make_batch_vec_env
@@ -83,26 +83,32 @@ class Training:
     def __init__(self, folder: Path, config: dict[str, Any], *, resume: bool):
         self.folder = folder
         self.config = config
-        # networks this small gain nothing from a second thread, and lose much where others use the machine as well
-        torch.set_num_threads(1)
+        use_one_thread()
         values = config["hyperparameters"]
         self.adapter = self._make_environment(n_envs=values.get("n_envs", 1), n_threads=config["threads"])
-        checkpoint = last_whole_checkpoint(folder / "checkpoints") if resume else None
-        if resume and checkpoint is None:
-            raise BadInputError(f"The run {folder} has no whole checkpoint to resume from; start it anew.")
-        saved: dict[str, Any] = {"seconds": 0.0, "evaluations": 0, "table_sizes": (0, 0)}
+        checkpoint = self._find_checkpoint() if resume else None
+        saved: dict[str, Any] = {"seconds": 0.0, "table_sizes": (0, 0)}
         self.model = self._new_model() if checkpoint is None else self._load_model(checkpoint)
         self.model.set_logger(Logger(folder=None, output_formats=[]))
         if checkpoint is not None:
             saved = self._load_state(checkpoint)
         self.metrics = Table(folder / METRICS, size=saved["table_sizes"][0])
         self.evaluations = Table(folder / EVALUATIONS, size=saved["table_sizes"][1])
-        self.evaluations_done: int = saved["evaluations"]
+        self._points_passed = 0
         self._seconds_before: float = saved["seconds"]
         self._checkpoint_at = 0.0
         self._stop = False
 
     # Making, saving and restoring
+
+    def _find_checkpoint(self) -> Path | None:
+        checkpoints = self.folder / "checkpoints"
+        found = last_whole_checkpoint(checkpoints)
+        if found is None and checkpoint_folders(checkpoints):
+            raise BadInputError(f"The run {self.folder} has no whole checkpoint to resume from.")
+        if found is None:
+            print("The run ended before its first checkpoint: it starts from the beginning.")
+        return found
 
     def _make_environment(self, *, n_envs: int, n_threads: int) -> BatchVecEnv:
         env_kwargs = self.config["hyperparameters"].get("env_kwargs") or {}
@@ -142,7 +148,6 @@ class Training:
             "python": random.getstate(),
             "action_space": self.model.action_space.np_random.bit_generator.state,
             "seconds": self.budget.seconds,
-            "evaluations": self.evaluations_done,
             "table_sizes": (self.metrics.size, self.evaluations.size),
         }
         (folder / "state.pkl").write_bytes(pickle.dumps(state))
@@ -225,6 +230,8 @@ class Training:
             self.config["steps"] or 2**62, callback=None, reset_num_timesteps=not resumed
         )
         self._checkpoint_at = self.budget.seconds
+        if resumed:
+            self._pass_points()
         return callback
 
     def _ask_to_stop(self, number: int, frame: FrameType | None) -> None:
@@ -257,8 +264,13 @@ class Training:
     def _evaluate_when_due(self) -> None:
         """Evaluate at the start and whenever another equal part of the budget is spent."""
         points = self.config["evaluations"]
-        if points and self.budget.fraction(self.model.num_timesteps) * points >= self.evaluations_done:
+        if points and self.budget.fraction(self.model.num_timesteps) * points >= self._points_passed:
             self._evaluate()
+            self._pass_points()
+
+    def _pass_points(self) -> None:
+        spent = self.budget.fraction(self.model.num_timesteps)
+        self._points_passed = int(spent * self.config["evaluations"]) + 1
 
     def _evaluate(self) -> None:
         result = evaluate(
@@ -283,8 +295,6 @@ class Training:
             **{f"reward_{term}": mean for term, mean in result["terms"].items()},
         }
         self.evaluations.append(row)
-        points = self.config["evaluations"]
-        self.evaluations_done = int(self.budget.fraction(steps) * points) + 1
         self.display.say(
             f"evaluation at {steps:,} steps: return {row['return']:.3f} ± {row['return_ci95']:.3f}, "
             f"distance {row['distance']:.3f} m, success {row['success']:.0%}"

@@ -28,8 +28,6 @@ class BatchVecEnv(VecEnv):
 
     Attributes
     ----------
-    batch_infos : dict
-        What the last step reported of every environment, as arrays of shape (n,).
     term_keys : tuple of str
         ``reward_<term>`` of every reward term.
 
@@ -48,7 +46,6 @@ class BatchVecEnv(VecEnv):
         self.batch = batch
         super().__init__(batch.num_envs, batch.single_observation_space, batch.single_action_space)
         self.metadata = batch.metadata
-        self.batch_infos: dict[str, Any] = {}
         self._actions: np.ndarray = np.zeros((self.num_envs, *self.action_space.shape), np.float32)  # type: ignore[misc]
         self._running: dict[str, Any] = {"TimeLimit.truncated": False}
         self.term_keys = tuple(f"reward_{term}" for term in batch.weights)
@@ -69,7 +66,7 @@ class BatchVecEnv(VecEnv):
         for total in self._sums.values():
             total[:] = 0.0
         self._lengths[:] = 0
-        return observations.copy()
+        return observations
 
     def step_async(self, actions: np.ndarray) -> None:
         """Keep the actions, of shape (n, 42), for ``step_wait``."""
@@ -93,10 +90,9 @@ class BatchVecEnv(VecEnv):
         dones = terminated | truncated
         ended = np.flatnonzero(dones)
         last = infos["final_info"] if ended.size else infos
-        self.batch_infos = last
         self._sums["r"] += rewards
         for key in self.term_keys:
-            self._sums[key] += np.where(dones, last[key], infos[key]) if ended.size else infos[key]
+            self._sums[key] += last[key]
         self._lengths += 1
         env_infos = [self._running] * self.num_envs
         for i in ended.tolist():
@@ -104,7 +100,7 @@ class BatchVecEnv(VecEnv):
         self._lengths[ended] = 0
         for total in self._sums.values():
             total[ended] = 0.0
-        return observations.copy(), rewards.astype(np.float32), dones, env_infos
+        return observations, rewards.astype(np.float32), dones, env_infos
 
     def _episode_info(self, i: int, timed_out: bool, infos: dict[str, Any]) -> dict[str, Any]:
         last = {key: infos["final_info"][key][i] for key in ("is_success", "termination_reason", "distance")}
@@ -115,7 +111,7 @@ class BatchVecEnv(VecEnv):
             **last,
             "is_success": bool(last["is_success"]),
             "TimeLimit.truncated": timed_out,
-            "terminal_observation": infos["final_obs"][i].copy(),
+            "terminal_observation": infos["final_obs"][i],
             "episode": episode,
         }
 

@@ -65,7 +65,7 @@ def test_a_wrong_file_is_told(tmp_path):
     with pytest.raises(BadInputError, match="no entry"):
         hyperparameters.load("ppo", FORWARD, config=path)
     path.write_text(yaml.safe_dump({FORWARD: {"n_step": 5}}))
-    with pytest.raises(BadInputError, match="n_step.*did you mean 'n_steps'"):
+    with pytest.raises(BadInputError, match=r"n_step.*did you mean 'n_steps'"):
         hyperparameters.load("ppo", FORWARD, config=path)
 
 
