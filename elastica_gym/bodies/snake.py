@@ -9,7 +9,9 @@ random actions from shaking the body until the simulation breaks; a uniform damp
 would have to be so strong (10 1/s) that it halves the speed of every gait.
 
 Muscles are chosen here: they reach 2.5 + 1.75 + 1.25 mN m where all three levels act, enough to
-play the travelling wave of that paper, of 3.5 mN m, along most of the body.
+play the travelling wave of that paper, of 3.5 mN m, along most of the body. Those that lift and twist
+are weaker: enough to shift weight from one part of the body to another, not to throw it off the ground.
+With all equally strong, exploration is mostly thrashing, and learning takes twice as long.
 """
 
 import functools
@@ -36,8 +38,11 @@ SIM_DT = 1e-4
 """Largest time step at which random actions diverge in fewer than 1 of 10,000 control steps [s]"""
 
 MUSCLES = Muscles(
-    magnitudes={"normal": (2.5e-3, 1.75e-3, 1.25e-3), "binormal": (2.5e-3, 1.75e-3, 1.25e-3),
-                "tangent": (1e-3, 7e-4, 4e-4)},
+    magnitudes={
+        "normal": (2.5e-3, 1.75e-3, 1.25e-3),
+        "binormal": (7.5e-4, 5e-4, 2.5e-4),
+        "tangent": (5e-4, 3.5e-4, 2e-4),
+    },
     arms=((1.0, 0.5), (0.5, 0.0)),
     activation_time=0.06,
 )
