@@ -14,6 +14,7 @@ from PIL import Image
 from scipy.interpolate import CubicSpline
 
 import elastica_gym  # noqa: F401  (registers the environments)
+from agents.checks import BadInputError
 from elastica_gym.viz import Rollout, Stage, framing, run_rollout
 from elastica_gym.viz.frames import HEAD, animal, line
 
@@ -37,7 +38,7 @@ def main() -> int:
         picture = draw(rollout, n_moments=options.moments, width=options.size[0], height=options.size[1])
         options.output.parent.mkdir(parents=True, exist_ok=True)
         Image.fromarray(picture).save(options.output, optimize=True)
-    except (ImportError, OSError, RuntimeError) as error:
+    except (BadInputError, ImportError, OSError, RuntimeError) as error:
         print(f"make_picture: {error}", file=sys.stderr)
         return 1
     print(f"wrote {options.output}")
