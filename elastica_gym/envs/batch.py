@@ -116,6 +116,7 @@ class BatchEnv(VectorEnv):
     def _allocate(self) -> None:
         n = self.num_envs
         self.state, self.control = at_rest(self.body.model, self.body.rods, n)
+        self._rest = at_rest(self.body.model, self.body.rods)[0]
         self.pose, self._before = make_pose(n), make_pose(n)
         self.goal = np.zeros((n, 0))
         self.elapsed = np.zeros(n, dtype=np.int64)
@@ -279,7 +280,7 @@ class BatchEnv(VectorEnv):
         assert self._generators is not None
         begun = np.flatnonzero(mask)
         for i in begun:
-            draw_start(self._generators[i], self.body, self.state, i)
+            draw_start(self._generators[i], self.body, self._rest, self.state, i)
         self.control.couple[begun] = 0.0
         self.elapsed[begun] = 0
         self.activations[begun] = self.levels[begun] = self._distance[begun] = 0.0

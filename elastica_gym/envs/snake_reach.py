@@ -1,4 +1,77 @@
-"""SnakeReach: bring the head to a target around you within 20 s."""
+"""SnakeReach: bring the head to a target around you within 20 s.
+
+Description
+-----------
+The snake of SnakeForward, and a place on the ground, drawn uniformly over the ring between 0.5 and 1.5
+body lengths around its centre of mass, in any direction: behind it as often as before it.
+
+Action
+------
+``Box(-1, 1, (42,), float32)``: the activations that the muscles are commanded to, held for a control
+step and clipped to the range. Muscles follow with a time constant of 0.06 s. See `elastica_gym.muscles`.
+
+| index | direction | half of the body | function |
+|---|---|---|---|
+| 0-6, 7-13 | about the normal: bends sideways | front, rear | level 0, then 2 of level 1, then 4 of level 2 |
+| 14-20, 21-27 | about the binormal: lifts | front, rear | the same |
+| 28-34, 35-41 | about the tangent: twists | front, rear | the same |
+
+An action of another shape, or one that holds NaN, raises ValueError.
+
+Observation
+-----------
+``Box(float32)``, clipped to its range. All directions are in the frame of the heading: forward is the
+horizontal direction from the middle of the rear half to that of the front half, right is to its right
+seen from above with y up.
+
+| index | meaning | unit | range |
+|---|---|---|---|
+| 0-26 | position of 9 nodes, tail to head, from the centre of mass: forward, up, right of each | body length | -1 to 1 |
+| 27-53 | their velocity: forward, up, right of each | body lengths/s | -20 to 20 |
+| 54-83 | curvature about the normal and binormal, and twist, at 10 places, tail to head | 10/m | -10 to 10 |
+| 84-91 | force with which the ground carries each of 8 parts, tail to head | an 8th of the weight | 0 to 50 |
+| 92-133 | activation that each muscle has reached, in the order of the actions | 1 | -1 to 1 |
+| 134-135 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
+| 136 | part of the episode that is left | 1 | 0 to 1 |
+| 137-138 | way from head to target: forward and right | body length | -4 to 4 |
+| 139 | its length | body length | -4 to 4 |
+
+Rewards
+-------
+The sum of these terms, each of which is in the info as ``reward_<term>`` with its weight:
+
+| term | weight | formula, a control step |
+|---|---|---|
+| approach | 10 | how much nearer the head has come to the target, in body lengths |
+| success | 10 | 1 where the head is within 0.05 body lengths of the target |
+| early | 10 | at success, the part of the episode that is left |
+| effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
+| diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
+
+Approaches add up to the way made, wherever the head went between, so hovering earns nothing. The info
+also has ``distance``, minus the distance of the head from the target [m]; ``is_success``; and
+``termination_reason``: empty, ``success``, ``time_limit`` or ``diverged``.
+
+Starting state
+--------------
+All is drawn from the environment's own generator: the heading, uniform; the shape, bent in the plane by
+three sine waves of curvature with normal amplitudes of 2, 1 and 0.5 1/m, which the body straightens as
+it is let go; and a horizontal velocity with a standard deviation of 0.02 m/s. Muscles are at rest.
+
+Episode end
+-----------
+Terminated at success, and if numbers stop being finite or a node is faster than 100 m/s; then the last
+sound observation is returned. Truncated after 20 s, which are 400 control steps.
+
+Arguments
+---------
+Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.0001 s), ``duration``,
+``n_threads``, ``autoreset_mode``, ``weights``, ``body_kwargs``.
+
+Version history
+---------------
+v0: the first.
+"""
 
 from typing import TYPE_CHECKING
 

@@ -12,8 +12,10 @@ SPEED = 0.02
 """Standard deviation of the velocity in each horizontal direction [m/s]"""
 
 
-def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
+def draw_start(rng: np.random.Generator, body: Body, rest: State, state: State, i: int) -> None:
     """Write a new start into environment i: shape, heading and velocity at random, muscles at rest.
+
+    All else, ghosts included, is copied from ``rest``, the State of one body at rest: what diverged leaves no trace.
 
     Every rod lies flat at its height: in the plane it is bent by three sine waves of random strength
     and phase, and it straightens when let go. The animal's centre of mass is above the origin.
@@ -22,10 +24,8 @@ def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> No
     bends = rng.normal(0.0, BENDS)
     phases = rng.uniform(-np.pi, np.pi, len(BENDS))
     velocity = rng.normal(0.0, SPEED, 2)
-    for field in (state.v, state.w, state.couple, state.kappa, state.normal_force):
-        field[i] = 0.0
-    state.time[i] = 0.0
-    state.step[i] = 0
+    for field, resting in zip(state, rest, strict=True):
+        field[i] = resting[0]
     for rod, start in zip(body.rods, body.model.first_slot, strict=True):
         n = rod.n_elements
         position, directors = _bent(rod.rest_length, float(rod.position[1, 0]), heading, bends, phases, rod.nodal_mass)

@@ -217,5 +217,6 @@ def test_four_thousand_animals_at_once(env_id, make_vec):
     env = make_vec(env_id, 4096, control_dt=1e-3, duration=0.002, autoreset_mode=AutoresetMode.SAME_STEP)
     env.reset(seed=0)
     for _ in range(2):
-        _, _, _, truncated, _ = env.step(np.zeros((4096, 42)))
-    assert truncated.all()
+        _, _, terminated, truncated, _ = env.step(np.zeros((4096, 42)))
+    # a few of so many are at their target from the start
+    assert (terminated | truncated).mean() > 0.99

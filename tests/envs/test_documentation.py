@@ -1,0 +1,39 @@
+"""The docstrings are the specification: they say what is so."""
+
+import importlib
+import re
+
+import numpy as np
+
+
+def _specification(env):
+    return importlib.import_module(type(env).__module__.rsplit(".", 1)[0] + "." + _module(env)).__doc__
+
+
+def _module(env):
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", env.task.name).lower()
+
+
+def _index_rows(text):
+    """First and last index, and range, of each row of the observation table."""
+    section = text.split("Observation\n")[1].split("Rewards\n")[0]
+    rows = re.findall(r"^\| (\d+)(?:-(\d+))? \|.*\| (-?\d+) to (-?\d+) \|$", section, re.M)
+    return [(int(first), int(last or first), float(low), float(high)) for first, last, low, high in rows]
+
+
+def test_observation_table_covers_every_index_with_its_range(env_id, make_vec):
+    env = make_vec(env_id)
+    space, expected = env.single_observation_space, 0
+    for first, last, low, high in _index_rows(_specification(env)):
+        assert first == expected
+        np.testing.assert_array_equal(space.low[first : last + 1], low)
+        np.testing.assert_array_equal(space.high[first : last + 1], high)
+        expected = last + 1
+    assert expected == space.shape[0]
+
+
+def test_reward_table_gives_the_weights(env_id, make_vec):
+    env = make_vec(env_id)
+    section = _specification(env).split("Rewards\n")[1].split("Starting state\n")[0]
+    rows = re.findall(r"^\| (\w+) \| (-?[\d.]+) \|", section, re.M)
+    assert {name: float(weight) for name, weight in rows} == env.task.reward_weights
