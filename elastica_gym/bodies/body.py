@@ -98,6 +98,10 @@ class Pose(NamedTuple):
     sound: Index
     """1 where all is finite and below `FASTEST`, else 0, (B,) int64"""
 
+    def only(self, envs: slice) -> "Pose":
+        """Return views of some environments."""
+        return Pose(self.centre[envs], self.velocity[envs], self.heading[envs], self.head[envs], self.sound[envs])
+
 
 def make_pose(n_envs: int) -> Pose:
     """Allocate a Pose."""

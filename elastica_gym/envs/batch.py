@@ -1,6 +1,7 @@
 """The batched environment: all logic, over a leading environment axis."""
 
 import functools
+import itertools
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -12,14 +13,15 @@ from gymnasium.spaces import Box
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
 
-from ..bodies.body import Pose, activate, feel, make_pose
+from ..bodies.body import activate, feel, make_pose
 from ..cosserat import advance, at_rest
-from ..cosserat.model import Array
+from ..cosserat.model import Array, Index
 from ..cosserat.rod import require_not_negative, require_positive, require_stable
 from ..muscles import N_ACTIVATIONS, activation_names
 from .starts import draw_start
-from .task import Situation, Task
+from .task import Mask, Situation, Task
 
 CONTROL_DT = 0.05
 CLOCK_PERIOD = 1.0
@@ -27,6 +29,9 @@ CLOCK_PERIOD = 1.0
 READING_BOUNDS = (1.0, 20.0, 10.0, 50.0)
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length")
+
+
+Observations = NDArray[np.float32]
 
 
 class BatchEnv(VectorEnv):
@@ -77,7 +82,8 @@ class BatchEnv(VectorEnv):
         self.n_threads = n_threads or os.cpu_count() or 1
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self._set_times(control_dt, self.body.sim_dt if sim_dt is None else sim_dt, duration or task.duration)
-        self.metadata = {"render_modes": [], "render_fps": round(1.0 / control_dt), "autoreset_mode": self.autoreset_mode}
+        frames_per_second = round(1.0 / control_dt)
+        self.metadata = {"render_modes": [], "render_fps": frames_per_second, "autoreset_mode": self.autoreset_mode}
         self._make_spaces()
         self._allocate()
 
@@ -104,6 +110,7 @@ class BatchEnv(VectorEnv):
             *self.body.reading_names(), *(f"activation/{name}" for name in activation_names(self.body.arms)),
             "clock/sine", "clock/cosine", "time_left", *self.task.goal_names,
         )  # fmt: skip
+        self._low, self._high = low, high
         self.single_observation_space = Box(low, high, dtype=np.float32)
         self.single_action_space = Box(-1.0, 1.0, (N_ACTIVATIONS,), dtype=np.float32)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
@@ -132,7 +139,7 @@ class BatchEnv(VectorEnv):
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Array, dict[str, Any]]:
+    ) -> tuple[Observations, dict[str, Any]]:
         """Start new episodes.
 
         Parameters
@@ -154,7 +161,7 @@ class BatchEnv(VectorEnv):
         self._start(mask)
         return self._observations.copy(), {}
 
-    def step(self, actions: Array) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
+    def step(self, actions: Array) -> tuple[Observations, Array, Mask, Mask, dict[str, Any]]:
         """Advance every environment by one control step.
 
         Parameters
@@ -220,7 +227,7 @@ class BatchEnv(VectorEnv):
     def _in_threads(self, dt: float, n_substeps: int) -> None:
         n_threads = min(self.n_threads, self.num_envs)
         borders = [self.num_envs * t // n_threads for t in range(n_threads + 1)]
-        spans = list(zip(borders[:-1], borders[1:], strict=True))
+        spans = list(itertools.pairwise(borders))
         batch = self.body.model, self.state, self.control
         pool = _pool(os.getpid(), n_threads - 1)
         futures = [pool.submit(advance, *batch, *span, dt, n_substeps) for span in spans[1:]]
@@ -233,7 +240,7 @@ class BatchEnv(VectorEnv):
         left = 1.0 - self.elapsed / self.max_episode_steps
         return Situation(self.pose, self._before, self.goal, self.activations, left, self.control_dt, self.body)
 
-    def _judge(self, sound: Array) -> tuple[Array, dict[str, Any]]:
+    def _judge(self, sound: Mask) -> tuple[Array, dict[str, Any]]:
         """Return the rewards and an info with each of their terms; where physics has failed, only the penalty."""
         situation = self.situation()
         rewards, info = np.zeros(self.num_envs), {}
@@ -249,7 +256,7 @@ class BatchEnv(VectorEnv):
             info["is_success"] = sound & self.task.succeeds(situation)
         return rewards, info
 
-    def _observe(self, where: Array) -> None:
+    def _observe(self, where: Mask | Index) -> None:
         """Write the observations of some environments; the others keep their last ones."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
         situation = self.situation()
@@ -257,29 +264,32 @@ class BatchEnv(VectorEnv):
             columns = np.concatenate(
                 [self._readings, self.levels, np.sin(angle)[:, None], np.cos(angle)[:, None],
                  situation.time_left[:, None], self.task.see_goal(situation)], axis=1)  # fmt: skip
-        space = self.single_observation_space
-        self._observations[where] = np.clip(columns[where], space.low, space.high)
+        self._observations[where] = np.clip(columns[where], self._low, self._high)
 
     # episodes
 
-    def _seed(self, seed: int | Sequence[int | None] | None, mask: Array) -> None:
-        seeds = [seed + i for i in range(self.num_envs)] if isinstance(seed, (int, np.integer)) else seed
-        if seeds is None:
+    def _seed(self, seed: int | Sequence[int | None] | None, mask: Mask) -> None:
+        seeds: Sequence[int | None]
+        if seed is None:
             seeds = [None] * self.num_envs
-        elif len(seeds) != self.num_envs:
+        elif isinstance(seed, (int, np.integer)):
+            seeds = [int(seed) + i for i in range(self.num_envs)]
+        else:
+            seeds = seed
+        if len(seeds) != self.num_envs:
             raise ValueError(f"seed must be an integer or {self.num_envs} of them, not {len(seeds)}")
         if self._generators is None:
             self._generators = [seeding.np_random(each)[0] for each in seeds]
             return
-        for i in np.flatnonzero(mask):
+        for i in np.flatnonzero(mask).tolist():
             if seeds[i] is not None:
                 self._generators[i] = seeding.np_random(seeds[i])[0]
 
-    def _start(self, mask: Array) -> None:
+    def _start(self, mask: Mask) -> None:
         """Draw new episodes where the mask is true, and observe them."""
         assert self._generators is not None
         begun = np.flatnonzero(mask)
-        for i in begun:
+        for i in begun.tolist():
             draw_start(self._generators[i], self.body, self._rest, self.state, i)
         self.control.couple[begun] = 0.0
         self.elapsed[begun] = 0
@@ -288,7 +298,7 @@ class BatchEnv(VectorEnv):
         feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
         for old, new in zip(self._before, self.pose, strict=True):
             old[begun] = new[begun]
-        for i in begun:
+        for i in begun.tolist():
             goal = self.task.draw_goal(self._generators[i], self._situation_of(i))
             if self.goal.shape[1] != goal.size:
                 self.goal = np.zeros((self.num_envs, goal.size))
@@ -298,15 +308,15 @@ class BatchEnv(VectorEnv):
     def _situation_of(self, i: int) -> Situation:
         one = slice(i, i + 1)
         s = self.situation()
-        return s._replace(pose=Pose(*(a[one] for a in s.pose)), before=Pose(*(a[one] for a in s.before)),
-                          goal=s.goal[one], activations=s.activations[one], time_left=s.time_left[one])  # fmt: skip
+        return s._replace(pose=s.pose.only(one), before=s.before.only(one), goal=s.goal[one],
+                          activations=s.activations[one], time_left=s.time_left[one])  # fmt: skip
 
-    def _blank(self, begun: Array, rewards: Array, terminated: Array, truncated: Array, info: dict[str, Any]) -> None:
+    def _blank(self, begun: Mask, rewards: Array, terminated: Mask, truncated: Mask, info: dict[str, Any]) -> None:
         """Clear what a step that only began an episode returns (autoreset NEXT_STEP)."""
         for values in (rewards, terminated, truncated, *info.values()):
             values[begun] = "" if values.dtype == object else 0
 
-    def _restart(self, ended: Array, info: dict[str, Any]) -> dict[str, Any]:
+    def _restart(self, ended: Mask, info: dict[str, Any]) -> dict[str, Any]:
         """Begin new episodes where old ones ended, which keep their last observation in the info (SAME_STEP)."""
         aside = {**info, **{f"_{name}": ended.copy() for name in info}}
         final = {"final_obs": self._observations.copy(), "_final_obs": ended.copy(),
@@ -375,14 +385,14 @@ def _merge_weights(task: Task, changed: dict[str, float]) -> dict[str, float]:
     return {**task.reward_weights, **changed}
 
 
-def _checked_mask(mask: Array, num_envs: int) -> Array:
+def _checked_mask(mask: Any, num_envs: int) -> Mask:
     values = np.asarray(mask)
     if values.shape != (num_envs,) or values.dtype != np.bool_:
         raise ValueError(f"reset_mask must be {num_envs} booleans, not {values.dtype} of shape {values.shape}")
     return values
 
 
-def _reasons(sound: Array, terminated: Array, truncated: Array) -> Array:
+def _reasons(sound: Mask, terminated: Mask, truncated: Mask) -> NDArray[np.object_]:
     reasons = np.full(sound.shape, "", dtype=object)
     reasons[truncated] = "time_limit"
     reasons[terminated] = "success"

@@ -7,7 +7,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from ..cosserat.model import Array
-from .batch import BatchEnv
+from .batch import BatchEnv, Observations
 from .task import Task
 
 
@@ -35,14 +35,16 @@ class SingleEnv(gymnasium.Env):
         self.action_space = self.batch.single_action_space
         self.render_mode = render_mode
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observations, dict[str, Any]]:
         """Start a new episode; see `BatchEnv.reset`."""
         observations, info = self.batch.reset(seed=seed)
         assert self.batch._generators is not None
         self._np_random = self.batch._generators[0]
         return observations[0], info
 
-    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+    def step(self, action: Array) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
         """Advance by one control step; see `BatchEnv.step`."""
         values = np.asarray(action)
         if values.shape != self.action_space.shape:

@@ -26,7 +26,7 @@ seen from above with y up.
 
 | index | meaning | unit | range |
 |---|---|---|---|
-| 0-26 | position of 9 nodes, tail to head, from the centre of mass: forward, up, right of each | body length | -1 to 1 |
+| 0-26 | position of 9 nodes, tail to head, from the centre of mass: forward, up, right | body length | -1 to 1 |
 | 27-53 | their velocity: forward, up, right of each | body lengths/s | -20 to 20 |
 | 54-83 | curvature about the normal and binormal, and twist, at 10 places, tail to head | 10/m | -10 to 10 |
 | 84-91 | force with which the ground carries each of 8 parts, tail to head | an 8th of the weight | 0 to 50 |
@@ -76,7 +76,7 @@ import numpy as np
 from ..bodies import snake
 from ..cosserat.model import Array
 from .gaits import snake_crawl
-from .task import Situation, Task, effort, in_heading_frame
+from .task import Mask, Situation, Task, effort, in_heading_frame
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -110,7 +110,7 @@ def forward(situation: Situation) -> Array:
     return made / situation.body.senses.length
 
 
-def succeeds(situation: Situation) -> Array:
+def succeeds(situation: Situation) -> Mask:
     """Return whether the animal has come a body length, (B,) bool."""
     return distance(situation) >= FAR
 

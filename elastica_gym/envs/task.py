@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..bodies.body import Body, Pose
 from ..cosserat.model import Array
+
+Mask = NDArray[np.bool_]
 
 
 class Situation(NamedTuple):
@@ -73,7 +76,7 @@ class Task:
     reward_terms: dict[str, Callable[[Situation], Array]]
     reward_weights: dict[str, float]
     distance: Callable[[Situation], Array]
-    succeeds: Callable[[Situation], Array]
+    succeeds: Callable[[Situation], Mask]
     ends_on_success: bool
     target: Callable[[Array], Array | None]
     scripted_policy: Callable[[Any], Array]
