@@ -13,7 +13,6 @@ animal as a whole; they act on the ground only through its shape.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from .cosserat import Rod
 from .cosserat.model import Array
@@ -107,6 +106,9 @@ def activations_for(couple: Array, matrix: Array, direction: str = "normal") -> 
     Array
         (m, 42), nearest in the sense of least squares within the bounds.
     """
+    # imported here: it takes longer than all else that `import elastica_gym` does
+    from scipy.optimize import lsq_linear
+
     d = DIRECTIONS.index(direction)
     chosen = np.arange(N_ACTIVATIONS).reshape(len(DIRECTIONS), -1)[d]
     activations = np.zeros((len(couple), N_ACTIVATIONS))

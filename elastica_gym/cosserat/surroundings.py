@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BSpline
 
 from .model import Array
 from .rod import require_not_negative, require_positive
@@ -92,6 +91,9 @@ class Wave:
 
     def profiles(self, rest_length: Array) -> tuple[Array, Array]:
         """Return what multiplies sin and cos of 2 pi t/period: the couple at Voronoi points [N m], (n - 1,) each."""
+        # imported here: it takes longer than all else that `import elastica_gym` does
+        from scipy.interpolate import BSpline
+
         s = np.cumsum(rest_length) / np.sum(rest_length)
         b = np.asarray(self.coefficients, dtype=np.float64)
         knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, len(b) - 2), np.ones(3)])

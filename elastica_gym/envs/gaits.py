@@ -4,7 +4,6 @@ import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import BSpline
 
 from ..bodies.body import Body
 from ..cosserat.model import Array
@@ -63,6 +62,9 @@ def wave_couples(n_elements: int, phases: Array) -> Array:
 
     The amplitude is a cubic B-spline along the body, counted from the head (Gazzola et al. 2018, section 5.2).
     """
+    # imported here: it takes longer than all else that `import elastica_gym` does
+    from scipy.interpolate import BSpline
+
     b = np.array(SEED_COEFFICIENTS)
     knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, len(b) - 2), np.ones(3)])
     from_head = 1.0 - np.arange(1, n_elements) / n_elements
