@@ -25,8 +25,8 @@ from .task import Mask, Situation, Task
 
 CONTROL_DT = 0.05
 CLOCK_PERIOD = 1.0
-# largest absolute value of positions, velocities, curvatures and contact in observations
-READING_BOUNDS = (1.0, 20.0, 10.0, 50.0)
+# least and largest value of positions, velocities, curvatures and contact in observations
+READING_BOUNDS = ((-1.0, 1.0), (-20.0, 20.0), (-10.0, 10.0), (0.0, 50.0))
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length")
 
@@ -101,24 +101,19 @@ class BatchEnv(VectorEnv):
     def _make_spaces(self) -> None:
         senses = self.body.senses
         counts = (3 * senses.nodes.size, 3 * senses.nodes.size, 3 * senses.joints.size, senses.skin.size - 1)
-        bounds = [*np.repeat(READING_BOUNDS, counts), *np.ones(N_ACTIVATIONS), 1.0, 1.0, 1.0, *self.task.goal_bounds]
-        high = np.array(bounds, dtype=np.float32)
-        low = -high
-        for sign_free in (slice(sum(counts[:3]), sum(counts)), self._time_left_index):
-            low[sign_free] = 0.0
+        bounds = np.concatenate([
+            np.repeat(READING_BOUNDS, counts, axis=0), np.repeat([(-1.0, 1.0)], N_ACTIVATIONS + 2, axis=0),
+            [(0.0, 1.0)], self.task.goal_bounds,
+        ]).astype(np.float32)  # fmt: skip
+        self._low, self._high = bounds.T.copy()
         self.observation_names = (
             *self.body.reading_names(), *(f"activation/{name}" for name in activation_names(self.body.arms)),
             "clock/sine", "clock/cosine", "time_left", *self.task.goal_names,
         )  # fmt: skip
-        self._low, self._high = low, high
-        self.single_observation_space = Box(low, high, dtype=np.float32)
+        self.single_observation_space = Box(self._low, self._high, dtype=np.float32)
         self.single_action_space = Box(-1.0, 1.0, (N_ACTIVATIONS,), dtype=np.float32)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
-
-    @property
-    def _time_left_index(self) -> int:
-        return self.body.n_readings + N_ACTIVATIONS + 2
 
     def _allocate(self) -> None:
         n = self.num_envs

@@ -61,7 +61,7 @@ faster than 100 m/s; the last sound observation is returned.
 
 Arguments
 ---------
-Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.0001 s), ``duration``,
+Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00011 s), ``duration``,
 ``n_threads``, ``autoreset_mode``, ``weights``, ``body_kwargs``.
 
 Version history
@@ -136,7 +136,7 @@ TASK = Task(
     duration=10.0,
     draw_goal=draw_goal,
     goal_names=("goal/forward", "goal/right"),
-    goal_bounds=(1.0, 1.0),
+    goal_bounds=((-1.0, 1.0), (-1.0, 1.0)),
     see_goal=see_goal,
     reward_terms={"forward": forward, "effort": effort},
     reward_weights={"forward": 10.0, "effort": 0.1, "diverged": -10.0},

@@ -34,7 +34,7 @@ seen from above with y up.
 | 134-135 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
 | 136 | part of the episode that is left | 1 | 0 to 1 |
 | 137-138 | way from head to target: forward and right | body length | -4 to 4 |
-| 139 | its length | body length | -4 to 4 |
+| 139 | its length | body length | 0 to 4 |
 
 Rewards
 -------
@@ -65,7 +65,7 @@ sound observation is returned. Truncated after 20 s, which are 400 control steps
 
 Arguments
 ---------
-Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.0001 s), ``duration``,
+Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00011 s), ``duration``,
 ``n_threads``, ``autoreset_mode``, ``weights``, ``body_kwargs``.
 
 Version history
@@ -165,7 +165,7 @@ TASK = Task(
     duration=20.0,
     draw_goal=draw_goal,
     goal_names=("goal/forward", "goal/right", "goal/gap"),
-    goal_bounds=(4.0, 4.0, 4.0),
+    goal_bounds=((-4.0, 4.0), (-4.0, 4.0), (0.0, 4.0)),
     see_goal=see_goal,
     reward_terms={"approach": approach, "success": success, "early": early, "effort": effort},
     reward_weights={"approach": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "diverged": -10.0},

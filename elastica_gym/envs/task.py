@@ -46,8 +46,8 @@ class Task:
         From a generator and the situation of one environment at reset, its goal, (G,).
     goal_names : tuple of str
         Names of what ``see_goal`` returns.
-    goal_bounds : tuple of float
-        Largest absolute value of each.
+    goal_bounds : tuple of tuple of float
+        Least and largest value of each.
     see_goal : callable
         From a situation, what the animal sees of its goal in the frame of its heading, (B, g).
     reward_terms : dict of str to callable
@@ -71,7 +71,7 @@ class Task:
     duration: float
     draw_goal: Callable[[np.random.Generator, Situation], Array]
     goal_names: tuple[str, ...]
-    goal_bounds: tuple[float, ...]
+    goal_bounds: tuple[tuple[float, float], ...]
     see_goal: Callable[[Situation], Array]
     reward_terms: dict[str, Callable[[Situation], Array]]
     reward_weights: dict[str, float]
