@@ -46,6 +46,22 @@ class Muscles:
     activation_time: float
 
 
+SNAKE = Muscles(
+    magnitudes={
+        "normal": (2.5e-3, 1.75e-3, 1.25e-3),
+        "binormal": (7.5e-4, 5e-4, 2.5e-4),
+        "tangent": (5e-4, 3.5e-4, 2e-4),
+    },
+    arms=((1.0, 0.5), (0.5, 0.0)),
+    activation_time=0.06,
+)
+"""The snake's: its arms are the front and the rear half, each from the head's side.
+
+Where all three levels act, bending reaches 5.5 mN m, enough to play the published travelling wave of 3.5 mN m along
+most of the body. What lifts and twists is weaker: enough to shift weight from one part of the body to another, not to
+throw it off the ground. With all equally strong, exploration is mostly thrashing, and learning takes twice as long."""
+
+
 def basis(s: Array, direction: str = "normal") -> Array:
     """Return the seven Gaussians of an arm, exp(-((s - c)/width)^2), (7, m).
 

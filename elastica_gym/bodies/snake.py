@@ -7,11 +7,6 @@ Damping is the original's: 0.0001 kg/(m s) against velocity, which is next to no
 kg m/s against angular velocity, which is 580 1/s for a thin rod. The second is what keeps strong
 random actions from shaking the body until the simulation breaks; a uniform damping of all velocities
 would have to be so strong (10 1/s) that it halves the speed of every gait.
-
-Muscles are chosen here: they reach 2.5 + 1.75 + 1.25 mN m where all three levels act, enough to
-play the travelling wave of that paper, of 3.5 mN m, along most of the body. Those that lift and twist
-are weaker: enough to shift weight from one part of the body to another, not to throw it off the ground.
-With all equally strong, exploration is mostly thrashing, and learning takes twice as long.
 """
 
 import functools
@@ -19,7 +14,7 @@ import functools
 import numpy as np
 
 from ..cosserat import Plane, Rod, build_model, stable_time_step
-from ..muscles import N_ACTIVATIONS, Muscles, couple_matrix
+from ..muscles import N_ACTIVATIONS, SNAKE, couple_matrix
 from .body import Body, Senses
 
 LENGTH = 0.35
@@ -38,16 +33,6 @@ SIM_DT = 1.1e-4
 """Largest time step, in tens of microseconds, at which fewer than 1 of 10,000 control steps diverge under random
 actions [s]: none of 100,000 does. At 113 microseconds none of 15,000 did, at 116 all; the undeformed rod is stable
 below 117. Count with scripts/count_divergence.py."""
-
-MUSCLES = Muscles(
-    magnitudes={
-        "normal": (2.5e-3, 1.75e-3, 1.25e-3),
-        "binormal": (7.5e-4, 5e-4, 2.5e-4),
-        "tangent": (5e-4, 3.5e-4, 2e-4),
-    },
-    arms=((1.0, 0.5), (0.5, 0.0)),
-    activation_time=0.06,
-)
 
 
 @functools.cache
@@ -75,13 +60,13 @@ def snake(n_elements: int = 50) -> Body:
     # friction is kinetic: the original's static coefficients are zero
     ground = Plane(stiffness=1.0, damping=1e-6, kinetic_friction=friction, slip_tolerance=1e-8)
     model = build_model(
-        [rod], planes=[ground], gravity=(0.0, -GRAVITY, 0.0), activation_time=MUSCLES.activation_time
+        [rod], planes=[ground], gravity=(0.0, -GRAVITY, 0.0), activation_time=SNAKE.activation_time
     )
     start = int(model.first_slot[0])
     couples = np.zeros((N_ACTIVATIONS, 3, model.mass.size))
-    couples[:, :, start : start + n_elements - 1] = couple_matrix(MUSCLES, rod)
+    couples[:, :, start : start + n_elements - 1] = couple_matrix(SNAKE, rod)
     return Body(
-        name="snake", rods=(rod,), model=model, muscles=MUSCLES, arms=("front", "rear"), couples=couples,
+        name="snake", rods=(rod,), model=model, muscles=SNAKE, arms=("front", "rear"), couples=couples,
         senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
         sim_dt=min(SIM_DT, 0.94 * stable_time_step(rod)),
     )  # fmt: skip
