@@ -215,12 +215,12 @@ def _log_animal(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     _columns(stream, rollout, "animal/nodes", nodes)
     stream.log("animal/nodes", rr.Points3D.from_fields(radii=0.2 * thick, colors=[HEAD]), static=True)
     _columns(stream, rollout, "animal/head", rr.Ellipsoids3D.columns(
-        centers=rollout.head, half_sizes=np.full_like(rollout.head, 1.25 * thick),
+        centers=rollout.head, half_sizes=np.full_like(rollout.head, 1.5 * thick),
     ))  # fmt: skip
     stream.log("animal/head", rr.Ellipsoids3D.from_fields(colors=[HEAD], fill_mode="solid"), static=True)
 
     # a piece of the trail for each step; the blueprint shows all pieces up to now
-    path = rollout.head + np.array([0.0, 1.5 * thick, 0.0])
+    path = rollout.head + np.array([0.0, 1.6 * thick, 0.0])
     pieces = np.stack([np.concatenate([path[:1], path[:-1]]), path], axis=1)
     _columns(stream, rollout, "animal/trail", rr.LineStrips3D.columns(strips=pieces))
     stream.log("animal/trail", rr.LineStrips3D.from_fields(radii=0.25 * thick, colors=[HEAD]), static=True)
