@@ -27,7 +27,7 @@ def environment() -> dict[str, str]:
 def run(module: str, *args: str | Path, status: int = 0, **options: object) -> str:
     """Run a module of agents to its end, and return what it printed."""
     done = subprocess.run(
-        arguments(module, *args), env=environment(), cwd=ROOT, capture_output=True, text=True, timeout=120, **options
+        arguments(module, *args), env=environment(), cwd=ROOT, capture_output=True, text=True, timeout=400, **options
     )  # type: ignore[call-overload]
     output = done.stdout + done.stderr
     assert done.returncode == status, output

@@ -24,12 +24,12 @@ def run_until(checkpoints: int, sign: int, folder: Path, *args: str | Path) -> t
         arguments("agents.train", *args), env=environment(), cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         text=True,
     )  # fmt: skip
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + 400
     while len(seen) < checkpoints and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.002)
         seen |= set(checkpoint_folders(folder / "checkpoints"))
     process.send_signal(sign)
-    output = process.communicate(timeout=60)[0]
+    output = process.communicate(timeout=400)[0]
     assert not (folder / "learning_curve.png").exists() or sign == signal.SIGINT, output
     return process.returncode, output
 
