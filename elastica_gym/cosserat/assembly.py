@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .model import BLOCK, LEAD, Array, Control, Model, Planes, State, Waves, aligned_zeros, make_control, make_state
-from .rod import Rod, require_not_negative
+from .rod import Rod, require_finite, require_not_negative
 from .surroundings import Plane, Wave
 
 
@@ -40,6 +40,7 @@ def build_model(
     if not rods:
         raise ValueError("rods is empty; a model needs at least one")
     require_not_negative("activation_time", activation_time)
+    require_finite("gravity", gravity, 3)
     counts = np.array([rod.n_elements for rod in rods])
     first = LEAD + np.concatenate([[0], np.cumsum(counts + 1)[:-1]])
     occupied = int(np.sum(counts + 1))

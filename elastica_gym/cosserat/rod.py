@@ -68,7 +68,7 @@ class Rod:
         checked = {
             "position": position,
             "directors": _array("directors", self.directors, (3, 3, n)),
-            "radius": _array("radius", np.broadcast_to(self.radius, (n,)), (n,)),
+            "radius": _array("radius", np.full(n, self.radius) if np.ndim(self.radius) == 0 else self.radius, (n,)),
             "rest_kappa": _array("rest_kappa", _or_zeros(self.rest_kappa, n - 1), (3, n - 1)),
             "rest_sigma": _array("rest_sigma", _or_zeros(self.rest_sigma, n), (3, n)),
         }
@@ -114,7 +114,7 @@ class Rod:
         require_positive("length", length)
         tangent = _unit("direction", direction)
         nodes = _array("start", start, (3,))[:, None] + length * tangent[:, None] * np.linspace(0, 1, n_elements + 1)
-        return cls.through(nodes, normal=normal, radius=np.broadcast_to(radius, (n_elements,)), **material)
+        return cls.through(nodes, normal=normal, radius=radius, **material)
 
     @classmethod
     def through(cls, position: ArrayLike, *, normal: ArrayLike, radius: ArrayLike, **material: Any) -> "Rod":
@@ -223,6 +223,13 @@ def require_not_negative(name: str, value: float) -> None:
     """Raise ValueError unless ``value`` is finite and not below zero."""
     if not (np.isfinite(value) and value >= 0.0):
         raise ValueError(f"{name} must be zero or a positive number, not {value}")
+
+
+def require_finite(name: str, values: ArrayLike, size: int) -> None:
+    """Raise ValueError unless ``values`` are as many finite numbers as ``size`` says."""
+    array = np.asarray(values, dtype=np.float64)
+    if array.shape != (size,) or not np.isfinite(array).all():
+        raise ValueError(f"{name} must be {size} finite number{'s' if size > 1 else ''}, not {array.tolist()}")
 
 
 def _array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> Array:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .model import Array
-from .rod import require_not_negative, require_positive
+from .rod import require_finite, require_not_negative, require_positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,11 +40,14 @@ class Plane:
     surface_tolerance: float = 1e-4
 
     def __post_init__(self) -> None:
+        require_finite("origin", self.origin, 3)
+        require_finite("normal", self.normal, 3)
         require_positive("length of normal", float(np.linalg.norm(self.normal)))
         require_positive("slip_tolerance", self.slip_tolerance)
         for name in ("stiffness", "damping", "surface_tolerance"):
             require_not_negative(name, getattr(self, name))
         for name in ("kinetic_friction", "static_friction"):
+            require_finite(name, getattr(self, name), 3)
             for direction, value in zip(("forward", "backward", "sideways"), getattr(self, name), strict=True):
                 require_not_negative(f"{name} {direction}", value)
 
@@ -88,6 +91,10 @@ class Wave:
         require_not_negative("ramp_time", self.ramp_time)
         if len(self.coefficients) < 4:
             raise ValueError(f"coefficients must be at least 4 numbers, not {len(self.coefficients)}")
+        require_finite("coefficients", self.coefficients, len(self.coefficients))
+        require_finite("axis", self.axis, 3)
+        require_finite("wave_number", [self.wave_number], 1)
+        require_finite("phase", [self.phase], 1)
 
     def profiles(self, rest_length: Array) -> tuple[Array, Array]:
         """Return what multiplies sin and cos of 2 pi t/period: the couple at Voronoi points [N m], (n - 1,) each."""

@@ -10,9 +10,9 @@ turns: a long chain of dependent operations, such as an inverse root followed by
 a stage of its own with a short body, rather than a part of a long one.
 
 An *entry* is what Python calls. Its machine code is kept in a folder keyed by everything that
-decides what it is: this package's version, the text of all kernels, Numba's version and the CPU.
-Numba's own cache looks at the file of the entry alone and would load it stale after a change to a
-stage in another file.
+decides what it is: this package's version, the text of all physics, Numba's version and the CPU, and
+in it stamped with the text of its own file. Numba's own cache looks at that file alone and would
+load an entry stale after a change to a stage in another one.
 """
 
 import functools
@@ -24,7 +24,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import llvmlite.binding
 import numba
@@ -164,7 +164,7 @@ class _EntryLocator:
 
 
 class _EntryCacheImpl(CompileResultCacheImpl):
-    _locator_classes: ClassVar = [_EntryLocator]
+    _locator_classes = [_EntryLocator]  # noqa: RUF012
 
 
 class _EntryCache(FunctionCache):
@@ -182,5 +182,10 @@ class _EntryCache(FunctionCache):
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        print(f"{time.perf_counter() - self._started:.0f} s, kept in {self.cache_path}", file=sys.stderr, flush=True)
-        super().save_overload(sig, data)
+        took = f"{time.perf_counter() - self._started:.0f} s"
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            print(f"{took}, not kept in {self.cache_path}: {error}", file=sys.stderr, flush=True)
+        else:
+            print(f"{took}, kept in {self.cache_path}", file=sys.stderr, flush=True)
