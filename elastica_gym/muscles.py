@@ -23,9 +23,6 @@ N_FUNCTIONS = sum(LEVELS)
 N_ARMS = 2
 N_ACTIVATIONS = len(DIRECTIONS) * N_ARMS * N_FUNCTIONS
 
-WIDTHS = {"normal": (0.40, 0.25, 0.15), "binormal": (0.40, 0.25, 0.15), "tangent": (0.40, 0.25, 0.15)}
-"""Width of the Gaussians of each level, for an arm of length 1"""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Muscles:
@@ -35,13 +32,17 @@ class Muscles:
     ----------
     magnitudes : dict of str to tuple of float
         Couple at full activation of each level, by direction [N m].
+    widths : dict of str to tuple of float
+        Width of the Gaussians of each level, by direction, for an arm of length 1.
     arms : tuple of tuple of float
-        Begin and end of each arm as parts of the rod's length; a begin beyond the end runs backwards.
+        Begin and end of each arm as parts of the rod's length; a begin beyond the end runs backwards. A joint
+        at the end of one arm and the beginning of the next belongs to both.
     activation_time : float
         Time constant with which a muscle's activation follows the commanded one [s].
     """
 
     magnitudes: dict[str, tuple[float, float, float]]
+    widths: dict[str, tuple[float, float, float]]
     arms: tuple[tuple[float, float], tuple[float, float]]
     activation_time: float
 
@@ -52,6 +53,7 @@ SNAKE = Muscles(
         "binormal": (7.5e-4, 5e-4, 2.5e-4),
         "tangent": (5e-4, 3.5e-4, 2e-4),
     },
+    widths=dict.fromkeys(DIRECTIONS, (0.40, 0.25, 0.15)),
     arms=((1.0, 0.5), (0.5, 0.0)),
     activation_time=0.06,
 )
@@ -62,19 +64,19 @@ most of the body. What lifts and twists is weaker: enough to shift weight from o
 throw it off the ground. With all equally strong, exploration is mostly thrashing, and learning takes twice as long."""
 
 
-def basis(s: Array, direction: str = "normal") -> Array:
+def basis(s: Array, widths: tuple[float, float, float]) -> Array:
     """Return the seven Gaussians of an arm, exp(-((s - c)/width)^2), (7, m).
 
     Parameters
     ----------
     s : Array
         Places along the arm, 0 at its beginning and 1 at its end, (m,). Beyond, the functions are 0.
-    direction : str
-        One of `DIRECTIONS`.
+    widths : tuple of float
+        Width of the Gaussians of each level.
     """
     rows = [
         np.exp(-(((s - (i + 0.5) / count) / width) ** 2))
-        for count, width in zip(LEVELS, WIDTHS[direction], strict=True)
+        for count, width in zip(LEVELS, widths, strict=True)
         for i in range(count)
     ]
     return np.array(rows) * ((s >= 0.0) & (s <= 1.0))
@@ -90,7 +92,7 @@ def couple_matrix(muscles: Muscles, rod: Rod) -> Array:
     for d, direction in enumerate(DIRECTIONS):
         strength = np.repeat(muscles.magnitudes[direction], LEVELS)
         for a, (begin, end) in enumerate(muscles.arms):
-            matrix[d, a, :, d] = strength[:, None] * basis((ends - begin) / (end - begin), direction)
+            matrix[d, a, :, d] = strength[:, None] * basis((ends - begin) / (end - begin), muscles.widths[direction])
     return matrix.reshape(N_ACTIVATIONS, 3, rod.n_elements - 1)
 
 

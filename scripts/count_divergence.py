@@ -38,7 +38,8 @@ def count(env_id: str, arguments: Arguments) -> tuple[int, int, float]:
     diverged, rounds = 0, -(-arguments.steps // n)
     for _ in tqdm(range(rounds), desc=env_id):
         info = env.step(rng.uniform(-1.0, 1.0, env.action_space.shape))[4]
-        diverged += int(np.sum(info["termination_reason"] == "diverged"))
+        if "final_info" in info:
+            diverged += int(np.sum(info["final_info"]["termination_reason"] == "diverged"))
     env.close()
     return diverged, rounds * n, env.unwrapped.sim_dt  # type: ignore[attr-defined]
 

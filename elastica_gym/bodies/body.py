@@ -10,8 +10,8 @@ from ..cosserat.kernels.compiler import entry, inline
 from ..cosserat.model import Array, Index
 from ..muscles import Muscles
 
-FASTEST = 100.0
-"""Speed of a node above which a simulation has diverged [m/s]"""
+FASTEST = 10.0
+"""Speed of a node above which a simulation has diverged [m/s]: no muscle moves one half as fast"""
 
 
 class Senses(NamedTuple):
@@ -40,7 +40,7 @@ class Senses(NamedTuple):
 # compared by identity: its functions cache what they derive from it
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
-    """An animal in its surroundings.
+    """An animal in its surroundings. Environments of the same animal share one; it is not to be changed.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Body:
         Couple in the slots of the Model by activation [N m], (42, 3, L).
     senses : Senses
     sim_dt : float
-        Time step that holds the bound on divergence under random actions [s].
+        Time step of the physics unless another is asked for [s].
     """
 
     name: str

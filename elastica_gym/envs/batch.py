@@ -4,7 +4,7 @@ import functools
 import itertools
 import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from copy import deepcopy
 from typing import Any
 
@@ -18,9 +18,8 @@ from numpy.typing import NDArray
 from ..bodies.body import activate, feel, make_pose
 from ..cosserat import advance, at_rest
 from ..cosserat.model import Array, Index
-from ..cosserat.rod import require_not_negative, require_positive, require_stable
+from ..cosserat.rod import require_positive, require_stable
 from ..muscles import N_ACTIVATIONS, activation_names
-from .starts import draw_start
 from .task import Mask, Situation, Task
 
 CONTROL_DT = 0.05
@@ -50,9 +49,10 @@ class BatchEnv(VectorEnv):
         Largest time step of the physics [s]; a control step takes as few equal ones as fit. By
         default the body's, which holds the bound on divergence.
     duration : float, optional
-        Simulated time of an episode [s]; by default the task's.
+        Simulated time of an episode [s], to the nearest control step; by default the task's.
     n_threads : int, optional
-        Threads that share the environments; by default the number of CPUs. Results do not depend on it.
+        Threads that share the environments; by default as many as there are CPUs to run on. Results
+        do not depend on it.
     autoreset_mode : AutoresetMode
         What becomes of an environment whose episode has ended.
     weights : dict of str to float, optional
@@ -72,16 +72,17 @@ class BatchEnv(VectorEnv):
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP, weights: dict[str, float] | None = None,
         body_kwargs: dict[str, Any] | None = None, render_mode: None = None,
     ) -> None:  # fmt: skip
-        if not 1 <= num_envs <= 4096:
-            raise ValueError(f"num_envs must be from 1 to 4096, not {num_envs}")
+        _require_count("num_envs", num_envs, 4096)
         if render_mode is not None:
             raise ValueError(f"render_mode must be None, not {render_mode!r}; record a rollout to look at it")
         self.task, self.num_envs, self.render_mode = task, num_envs, render_mode
         self.body = task.make_body(**(body_kwargs or {}))
         self.weights = _merge_weights(task, weights or {})
-        self.n_threads = n_threads or os.cpu_count() or 1
-        self.autoreset_mode = AutoresetMode(autoreset_mode)
-        self._set_times(control_dt, self.body.sim_dt if sim_dt is None else sim_dt, duration or task.duration)
+        self.n_threads = _available_cpus() if n_threads is None else n_threads
+        _require_count("n_threads", self.n_threads, 4096)
+        self.autoreset_mode = _autoreset_mode(autoreset_mode)
+        self._set_times(control_dt, self.body.sim_dt if sim_dt is None else sim_dt,
+                        task.duration if duration is None else duration)  # fmt: skip
         frames_per_second = round(1.0 / control_dt)
         self.metadata = {"render_modes": [], "render_fps": frames_per_second, "autoreset_mode": self.autoreset_mode}
         self._make_spaces()
@@ -91,7 +92,10 @@ class BatchEnv(VectorEnv):
         require_positive("control_dt", control_dt)
         require_positive("sim_dt", sim_dt)
         require_positive("duration", duration)
-        require_stable(self.body.rods, sim_dt)
+        try:
+            require_stable(self.body.rods, sim_dt)
+        except ValueError as error:
+            raise ValueError(f"sim_dt: {error}") from None
         self.control_dt = control_dt
         # a hair less, so that rounding in the quotient costs no extra step
         self.n_substeps = max(1, int(np.ceil(control_dt / sim_dt - 1e-9)))
@@ -120,7 +124,7 @@ class BatchEnv(VectorEnv):
         self.state, self.control = at_rest(self.body.model, self.body.rods, n)
         self._rest = at_rest(self.body.model, self.body.rods)[0]
         self.pose, self._before = make_pose(n), make_pose(n)
-        self.goal = np.zeros((n, 0))
+        self.goal = np.zeros((n, self.task.goal_size))
         self.elapsed = np.zeros(n, dtype=np.int64)
         self.activations = np.zeros((n, N_ACTIVATIONS))
         self.levels = np.zeros((n, N_ACTIVATIONS))
@@ -129,6 +133,7 @@ class BatchEnv(VectorEnv):
         self._distance = np.zeros(n)
         self._ended = np.zeros(n, dtype=bool)
         self._generators: list[np.random.Generator] | None = None
+        self._seeds: list[int] = []
 
     # the interface of gymnasium.vector.VectorEnv
 
@@ -140,7 +145,8 @@ class BatchEnv(VectorEnv):
         Parameters
         ----------
         seed : int or sequence of int, optional
-            An integer s seeds environment i with s + i. Without, the generators go on.
+            An integer s seeds environment i with s + i. Without, the generators go on; at the first reset they
+            are seeded from the operating system.
         options : dict, optional
             ``{"reset_mask": (B,) bool}`` resets only where it is true.
 
@@ -148,16 +154,25 @@ class BatchEnv(VectorEnv):
         -------
         tuple
             Observations (B, d) and an empty info.
+
+        Raises
+        ------
+        ValueError
+            If there is another option, or the mask would leave an environment without a start.
         """
-        mask = np.ones(self.num_envs, dtype=bool)
-        if options and "reset_mask" in options:
-            mask = _checked_mask(options["reset_mask"], self.num_envs)
+        mask = _reset_mask(options or {}, self.num_envs)
+        if self._generators is None and not mask.all():
+            raise ValueError("the first reset must start every environment, but reset_mask leaves out "
+                             f"{np.flatnonzero(~mask).tolist()}")  # fmt: skip
         self._seed(seed, mask)
         self._start(mask)
         return self._observations.copy(), {}
 
     def step(self, actions: Array) -> tuple[Observations, Array, Mask, Mask, dict[str, Any]]:
         """Advance every environment by one control step.
+
+        Where an episode has ended and there is no automatic reset, stepping on goes on with the physics, and what
+        it returns has no meaning.
 
         Parameters
         ----------
@@ -176,8 +191,8 @@ class BatchEnv(VectorEnv):
         """
         if self._generators is None:
             raise RuntimeError("call reset before step")
-        self.activations[:] = self._checked_actions(actions)
-        begin = self._ended.copy() if self.autoreset_mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, bool)
+        begin = self._ended & (self.autoreset_mode == AutoresetMode.NEXT_STEP)
+        self.activations[:] = self._checked_actions(actions, begin)
         self._advance()
         sound = self.pose.sound == 1
         rewards, info = self._judge(sound)
@@ -190,7 +205,9 @@ class BatchEnv(VectorEnv):
             self._blank(begin, rewards, terminated, truncated, info)
         self._ended = terminated | truncated
         if self.autoreset_mode == AutoresetMode.SAME_STEP and self._ended.any():
-            info = self._restart(self._ended, info)
+            info = self._restart(self._ended.copy(), info)
+        else:
+            info |= {f"_{name}": ~begin for name in info}
         return self._observations.copy(), rewards, terminated, truncated, info
 
     def close_extras(self, **kwargs: Any) -> None:
@@ -198,14 +215,14 @@ class BatchEnv(VectorEnv):
 
     # one control step
 
-    def _checked_actions(self, actions: Array) -> Array:
+    def _checked_actions(self, actions: Array, ignored: Mask) -> Array:
         values = np.asarray(actions, dtype=np.float64)
         if values.shape != self.action_space.shape:
             raise ValueError(f"actions must have shape {self.action_space.shape}, not {values.shape}")
-        if np.isnan(values).any():
-            raise ValueError(f"actions must be numbers, but those of environment {np.argwhere(np.isnan(values))[0, 0]} "
-                             "hold NaN")  # fmt: skip
-        return np.clip(values, -1.0, 1.0)
+        wrong = np.isnan(values).any(axis=1) & ~ignored
+        if wrong.any():
+            raise ValueError(f"actions must be numbers, but those of environment {int(wrong.argmax())} hold NaN")
+        return np.where(ignored[:, None], 0.0, np.clip(values, -1.0, 1.0))
 
     def _advance(self) -> None:
         """Move the animals, and feel where they are."""
@@ -218,6 +235,10 @@ class BatchEnv(VectorEnv):
         for old, new in zip(self._before, self.pose, strict=True):
             old[...] = new
         feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
+        diverged = self.pose.sound == 0
+        for name in ("centre", "velocity", "heading", "head"):
+            # what looks on, scripted policies among them, sees the last sound pose
+            getattr(self.pose, name)[diverged] = getattr(self._before, name)[diverged]
 
     def _in_threads(self, dt: float, n_substeps: int) -> None:
         n_threads = min(self.n_threads, self.num_envs)
@@ -226,13 +247,17 @@ class BatchEnv(VectorEnv):
         batch = self.body.model, self.state, self.control
         pool = _pool(os.getpid(), n_threads - 1)
         futures = [pool.submit(advance, *batch, *span, dt, n_substeps) for span in spans[1:]]
-        advance(*batch, *spans[0], dt, n_substeps)
+        try:
+            advance(*batch, *spans[0], dt, n_substeps)
+        finally:
+            # also after Ctrl-C: nobody writes State when this returns
+            wait(futures)
         for future in futures:
             future.result()
 
     def situation(self) -> Situation:
         """Return where the batch stands."""
-        left = 1.0 - self.elapsed / self.max_episode_steps
+        left = np.maximum(1.0 - self.elapsed / self.max_episode_steps, 0.0)
         return Situation(self.pose, self._before, self.goal, self.activations, left, self.control_dt, self.body)
 
     def _judge(self, sound: Mask) -> tuple[Array, dict[str, Any]]:
@@ -264,40 +289,38 @@ class BatchEnv(VectorEnv):
     # episodes
 
     def _seed(self, seed: int | Sequence[int | None] | None, mask: Mask) -> None:
-        seeds: Sequence[int | None]
-        if seed is None:
-            seeds = [None] * self.num_envs
-        elif isinstance(seed, (int, np.integer)):
-            seeds = [int(seed) + i for i in range(self.num_envs)]
-        else:
-            seeds = seed
-        if len(seeds) != self.num_envs:
-            raise ValueError(f"seed must be an integer or {self.num_envs} of them, not {len(seeds)}")
+        wanted: Sequence[int | None] = [None] * self.num_envs
+        if isinstance(seed, (int, np.integer)):
+            wanted = [int(seed) + i for i in range(self.num_envs)]
+        elif seed is not None:
+            wanted = _checked_seeds(seed, self.num_envs)
         if self._generators is None:
-            self._generators = [seeding.np_random(each)[0] for each in seeds]
+            made = [seeding.np_random(each) for each in wanted]
+            self._generators, self._seeds = [g for g, _ in made], [s for _, s in made]
             return
-        for i in np.flatnonzero(mask).tolist():
-            if seeds[i] is not None:
-                self._generators[i] = seeding.np_random(seeds[i])[0]
+        renewed = {i: seeding.np_random(wanted[i]) for i in np.flatnonzero(mask).tolist() if wanted[i] is not None}
+        for i, (generator, used) in renewed.items():
+            self._generators[i], self._seeds[i] = generator, used
 
     def _start(self, mask: Mask) -> None:
         """Draw new episodes where the mask is true, and observe them."""
         assert self._generators is not None
         begun = np.flatnonzero(mask)
-        for i in begun.tolist():
-            draw_start(self._generators[i], self.body, self._rest, self.state, i)
         self.control.couple[begun] = 0.0
         self.elapsed[begun] = 0
-        self.activations[begun] = self.levels[begun] = self._distance[begun] = 0.0
+        self.activations[begun] = self.levels[begun] = 0.0
         self._ended[begun] = False
+        for i in begun.tolist():
+            self.task.draw_start(self._generators[i], self.body, self._rest, self.state, i)
+            # a step of no duration moves nothing, and computes curvature and contact for the senses
+            advance(self.body.model, self.state, self.control, i, i + 1, 0.0, 1)
+            self.state.step[i] = 0
         feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
         for old, new in zip(self._before, self.pose, strict=True):
             old[begun] = new[begun]
         for i in begun.tolist():
-            goal = self.task.draw_goal(self._generators[i], self._situation_of(i))
-            if self.goal.shape[1] != goal.size:
-                self.goal = np.zeros((self.num_envs, goal.size))
-            self.goal[i] = goal
+            self.goal[i] = self.task.draw_goal(self._generators[i], self._situation_of(i))
+        self._distance[begun] = self.task.distance(self.situation())[begun]
         self._observe(begun)
 
     def _situation_of(self, i: int) -> Situation:
@@ -313,22 +336,30 @@ class BatchEnv(VectorEnv):
 
     def _restart(self, ended: Mask, info: dict[str, Any]) -> dict[str, Any]:
         """Begin new episodes where old ones ended, which keep their last observation in the info (SAME_STEP)."""
-        aside = {**info, **{f"_{name}": ended.copy() for name in info}}
-        final = {"final_obs": self._observations.copy(), "_final_obs": ended.copy(),
-                 "final_info": aside, "_final_info": ended.copy()}  # fmt: skip
+        aside = {name: value.copy() for name, value in info.items()}
+        final = {"final_obs": self._observations.copy(), "final_info": aside | {f"_{name}": ended for name in aside}}
         self._start(ended)
-        return {**info, **final}
+        # as in Gymnasium's own batches, the info of a new episode's first observation is empty
+        return {**info, **{f"_{name}": ~ended for name in info}, **final, **{f"_{name}": ended for name in final}}
 
     # checkpoints
 
     def get_state(self) -> dict[str, Any]:
         """Return all that decides what comes next, as copies; `set_state` goes on from it bit for bit."""
         return deepcopy({
+            "made_as": self._made_as(),
             "physics": {name: getattr(self.state, name) for name in PHYSICAL_STATE},
+            "control": tuple(self.control),
             "episodes": {name: getattr(self, name) for name in _EPISODE_STATE},
             "poses": [tuple(self.pose), tuple(self._before)],
             "generators": None if self._generators is None else [g.bit_generator.state for g in self._generators],
+            "seeds": self._seeds,
         })  # fmt: skip
+
+    def _made_as(self) -> dict[str, Any]:
+        names = ("num_envs", "control_dt", "sim_dt", "max_episode_steps")
+        elements = self.body.model.n_elements.tolist()
+        return {"task": self.task.name, "n_elements": elements, **{name: getattr(self, name) for name in names}}
 
     def set_state(self, saved: dict[str, Any]) -> None:
         """Go on from what `get_state` returned, here or in another process.
@@ -336,12 +367,13 @@ class BatchEnv(VectorEnv):
         Raises
         ------
         ValueError
-            If it was taken from a batch of another size or body.
+            If it was taken from an environment that was made otherwise: with another task, size, body or time step.
         """
-        if saved["physics"]["x"].shape != self.state.x.shape:
-            raise ValueError(f"the state is of {saved['physics']['x'].shape[0]} environments with "
-                             f"{saved['physics']['x'].shape[2]} slots; here are {self.num_envs} with "
-                             f"{self.state.x.shape[2]}")  # fmt: skip
+        for name, mine in self._made_as().items():
+            if saved["made_as"][name] != mine:
+                raise ValueError(f"the state was taken where {name} is {saved['made_as'][name]}; here it is {mine}")
+        for array, value in zip(self.control, saved["control"], strict=True):
+            array[...] = value
         for name, value in saved["physics"].items():
             getattr(self.state, name)[...] = value
         for name, value in saved["episodes"].items():
@@ -349,12 +381,23 @@ class BatchEnv(VectorEnv):
         for pose, values in zip((self.pose, self._before), saved["poses"], strict=True):
             for mine, value in zip(pose, values, strict=True):
                 mine[...] = value
+        self._seeds = list(saved["seeds"])
         if saved["generators"] is not None:
             self._generators = [np.random.Generator(np.random.PCG64(0)) for _ in range(self.num_envs)]
             for generator, state in zip(self._generators, saved["generators"], strict=True):
                 generator.bit_generator.state = state
 
     # for those who look on
+
+    @property
+    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[misc]
+        """The generator of each environment; none before the first reset."""
+        return tuple(self._generators or ())
+
+    @property
+    def np_random_seed(self) -> tuple[int, ...]:
+        """The seed that each generator was made with."""
+        return tuple(self._seeds)
 
     @property
     def target(self) -> Array | None:
@@ -371,20 +414,47 @@ def _pool(process: int, n_threads: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=max(1, n_threads), thread_name_prefix="elastica_gym")
 
 
+def _available_cpus() -> int:
+    """Return how many CPUs this process may run on, which may be fewer than there are."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _require_count(name: str, value: int, most: int) -> None:
+    if not isinstance(value, (int, np.integer)) or not 1 <= value <= most:
+        raise ValueError(f"{name} must be a whole number from 1 to {most}, not {value!r}")
+
+
+def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:
+    try:
+        return AutoresetMode(mode)
+    except ValueError:
+        allowed = ", ".join(repr(each.value) for each in AutoresetMode)
+        raise ValueError(f"autoreset_mode must be an AutoresetMode or one of {allowed}, not {mode!r}") from None
+
+
 def _merge_weights(task: Task, changed: dict[str, float]) -> dict[str, float]:
-    unknown = set(changed) - set(task.reward_weights)
-    if unknown:
-        raise ValueError(f"weights has no term {sorted(unknown)[0]!r}; there are {', '.join(task.reward_weights)}")
     for name, value in changed.items():
-        require_not_negative(f"weights[{name!r}]", abs(value))
+        if name not in task.reward_weights:
+            raise ValueError(f"weights has no term {name!r}; there are {', '.join(task.reward_weights)}")
+        if not isinstance(value, (int, float)) or not np.isfinite(value):
+            raise ValueError(f"weights[{name!r}] must be a finite number, not {value!r}")
     return {**task.reward_weights, **changed}
 
 
-def _checked_mask(mask: Any, num_envs: int) -> Mask:
-    values = np.asarray(mask)
-    if values.shape != (num_envs,) or values.dtype != np.bool_:
-        raise ValueError(f"reset_mask must be {num_envs} booleans, not {values.dtype} of shape {values.shape}")
-    return values
+def _reset_mask(options: dict[str, Any], num_envs: int) -> Mask:
+    for name in options:
+        if name != "reset_mask":
+            raise ValueError(f"options has no {name!r}; there is 'reset_mask'")
+    mask = np.asarray(options.get("reset_mask", np.ones(num_envs, dtype=bool)))
+    if mask.shape != (num_envs,) or mask.dtype != np.bool_ or not mask.any():
+        raise ValueError(f"reset_mask must be {num_envs} booleans, at least one of them true, not {mask!r}")
+    return mask
+
+
+def _checked_seeds(seeds: Sequence[int | None], num_envs: int) -> list[int | None]:
+    if not isinstance(seeds, (Sequence, np.ndarray)) or len(seeds) != num_envs:
+        raise ValueError(f"seed must be a whole number or {num_envs} of them, not {seeds!r}")
+    return [None if each is None else int(each) for each in seeds]
 
 
 def _reasons(sound: Mask, terminated: Mask, truncated: Mask) -> NDArray[np.object_]:

@@ -39,9 +39,10 @@ class SingleEnv(gymnasium.Env):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observations, dict[str, Any]]:
         """Start a new episode; see `BatchEnv.reset`."""
-        observations, info = self.batch.reset(seed=seed)
-        assert self.batch._generators is not None
-        self._np_random = self.batch._generators[0]
+        super().reset(seed=seed)
+        # the batch draws from this environment's own generator, also where a user has put one in
+        self.batch._generators, self.batch._seeds = [self.np_random], [self.np_random_seed]
+        observations, info = self.batch.reset(options=options)
         return observations[0], info
 
     def step(self, action: Array) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
@@ -51,7 +52,7 @@ class SingleEnv(gymnasium.Env):
             raise ValueError(f"action must have shape {self.action_space.shape}, not {values.shape}")
         observations, rewards, terminated, truncated, info = self.batch.step(values[None])
         return (observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]),
-                {name: value[0] for name, value in info.items()})  # fmt: skip
+                {name: value.item(0) for name, value in info.items() if not name.startswith("_")})  # fmt: skip
 
     def close(self) -> None:
         """Close the batch."""
@@ -65,4 +66,4 @@ class SingleEnv(gymnasium.Env):
         """Go on from what `get_state` returned."""
         self.batch.set_state(saved)
         if self.batch._generators is not None:
-            self._np_random = self.batch._generators[0]
+            self._np_random, self._np_random_seed = self.batch._generators[0], self.batch._seeds[0]

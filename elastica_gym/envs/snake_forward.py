@@ -57,7 +57,7 @@ it is let go; and a horizontal velocity with a standard deviation of 0.02 m/s. M
 Episode end
 -----------
 Truncated after 10 s, which are 200 control steps. Terminated if numbers stop being finite or a node is
-faster than 100 m/s; the last sound observation is returned.
+faster than 10 m/s; the last sound observation is returned.
 
 Arguments
 ---------
@@ -76,14 +76,11 @@ import numpy as np
 from ..bodies import snake
 from ..cosserat.model import Array
 from .gaits import snake_crawl
+from .starts import draw_start
 from .task import Mask, Situation, Task, effort, in_heading_frame
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
-
-FAR = 0.35
-"""Distance that counts as success: a body length [m]"""
-
 
 def draw_goal(rng: np.random.Generator, situation: Situation) -> Array:
     """Return the direction to go (x, z), which is the initial heading, and the point to go from (x, z), (4,)."""
@@ -112,7 +109,7 @@ def forward(situation: Situation) -> Array:
 
 def succeeds(situation: Situation) -> Mask:
     """Return whether the animal has come a body length, (B,) bool."""
-    return distance(situation) >= FAR
+    return distance(situation) >= situation.body.senses.length
 
 
 def no_target(goal: Array) -> None:
@@ -134,6 +131,8 @@ TASK = Task(
     name="SnakeForward",
     make_body=snake,
     duration=10.0,
+    draw_start=draw_start,
+    goal_size=4,
     draw_goal=draw_goal,
     goal_names=("goal/forward", "goal/right"),
     goal_bounds=((-1.0, 1.0), (-1.0, 1.0)),

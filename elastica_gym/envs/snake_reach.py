@@ -49,8 +49,8 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
 Approaches add up to the way made, wherever the head went between, so hovering earns nothing. The info
-also has ``distance``, minus the distance of the head from the target [m]; ``is_success``; and
-``termination_reason``: empty, ``success``, ``time_limit`` or ``diverged``.
+also has ``distance``, how much nearer the head is to the target than at reset [m]; ``is_success``; and
+``termination_reason``: empty, ``success``, ``time_limit`` or ``diverged``. Distances are horizontal.
 
 Starting state
 --------------
@@ -60,7 +60,7 @@ it is let go; and a horizontal velocity with a standard deviation of 0.02 m/s. M
 
 Episode end
 -----------
-Terminated at success, and if numbers stop being finite or a node is faster than 100 m/s; then the last
+Terminated at success, and if numbers stop being finite or a node is faster than 10 m/s; then the last
 sound observation is returned. Truncated after 20 s, which are 400 control steps.
 
 Arguments
@@ -80,6 +80,7 @@ import numpy as np
 from ..bodies import snake
 from ..cosserat.model import Array
 from .gaits import snake_crawl
+from .starts import draw_start
 from .task import Mask, Situation, Task, effort, in_heading_frame
 
 if TYPE_CHECKING:
@@ -92,12 +93,13 @@ RING = (0.5, 1.5)
 
 
 def draw_goal(rng: np.random.Generator, situation: Situation) -> Array:
-    """Return a target, uniform over the ring around the body, as (x, z) [m], (2,)."""
+    """Return a target, uniform over the ring around the body, as (x, z), and the head's way to it [m], (3,)."""
     inner, outer = RING
     # uniform over area: the square of the radius is uniform
     radius = np.sqrt(rng.uniform(inner**2, outer**2)) * situation.body.senses.length
     bearing = rng.uniform(-np.pi, np.pi)
-    return situation.pose.centre[0, [0, 2]] + radius * np.array([np.cos(bearing), np.sin(bearing)])
+    target = situation.pose.centre[0, [0, 2]] + radius * np.array([np.cos(bearing), np.sin(bearing)])
+    return np.array([*target, *_gap(target[None], situation.pose.head, 1.0)])
 
 
 def _gap(goal: Array, head: Array, length: float) -> Array:
@@ -138,8 +140,8 @@ def early(situation: Situation) -> Array:
 
 
 def distance(situation: Situation) -> Array:
-    """Return minus the horizontal distance of the head from the target [m], (B,)."""
-    return -gap(situation) * situation.body.senses.length
+    """Return how much nearer the head is to the target than at reset [m], (B,)."""
+    return situation.goal[:, 2] - _gap(situation.goal, situation.pose.head, 1.0)
 
 
 def target(goal: Array) -> Array:
@@ -163,6 +165,8 @@ TASK = Task(
     name="SnakeReach",
     make_body=snake,
     duration=20.0,
+    draw_start=draw_start,
+    goal_size=3,
     draw_goal=draw_goal,
     goal_names=("goal/forward", "goal/right", "goal/gap"),
     goal_bounds=((-4.0, 4.0), (-4.0, 4.0), (0.0, 4.0)),

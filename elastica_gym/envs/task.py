@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..bodies.body import Body, Pose
-from ..cosserat.model import Array
+from ..cosserat.model import Array, State
 
 Mask = NDArray[np.bool_]
 
@@ -42,6 +42,10 @@ class Task:
         Returns the `Body`; called with the environment's ``body_kwargs``.
     duration : float
         Simulated time of an episode [s].
+    draw_start : callable
+        Writes a new start into an environment; see `elastica_gym.envs.starts.draw_start`.
+    goal_size : int
+        How many numbers G a goal is.
     draw_goal : callable
         From a generator and the situation of one environment at reset, its goal, (G,).
     goal_names : tuple of str
@@ -69,6 +73,8 @@ class Task:
     name: str
     make_body: Callable[..., Body]
     duration: float
+    draw_start: Callable[[np.random.Generator, Body, State, State, int], None]
+    goal_size: int
     draw_goal: Callable[[np.random.Generator, Situation], Array]
     goal_names: tuple[str, ...]
     goal_bounds: tuple[tuple[float, float], ...]

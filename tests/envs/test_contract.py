@@ -71,6 +71,27 @@ def test_integer_seed_counts_up_over_the_batch(env_id, make_vec):
     assert not np.array_equal(together[0], together[1])
 
 
+@pytest.mark.parametrize("seed", [[1, 2], 1.5, "3"])
+def test_seeds_that_cannot_be_are_refused(env_id, make_vec, seed):
+    with pytest.raises(ValueError, match="seed must be a whole number or 3 of them"):
+        make_vec(env_id, 3).reset(seed=seed)
+
+
+def test_generators_are_the_environments_own(env_id, make_vec):
+    env = make_vec(env_id, 3)
+    env.reset(seed=np.array([4, 5, 6]))
+    assert env.np_random_seed == (4, 5, 6)
+    single = gymnasium.make(env_id, duration=SHORT).unwrapped
+    first, _ = single.reset(seed=5)
+    assert single.np_random_seed == 5 and single.np_random is single.batch.np_random[0]
+    single.np_random = np.random.Generator(np.random.PCG64(1))
+    one, _ = single.reset()
+    single.np_random = np.random.Generator(np.random.PCG64(1))
+    two, _ = single.reset()
+    np.testing.assert_array_equal(one, two)
+    assert not np.array_equal(first, one)
+
+
 def test_different_seeds_give_different_returns(env_id, make_vec):
     _, rewards, _ = roll(make_vec(env_id, 8), np.zeros((10, 8, 42)), 0)
     assert len(set(rewards.sum(axis=0))) == 8
@@ -126,8 +147,18 @@ def test_state_continues_bit_for_bit(env_id, make_vec):
 def test_state_of_another_batch_is_refused(env_id, make_vec):
     env = make_vec(env_id, 3)
     env.reset(seed=0)
-    with pytest.raises(ValueError, match="3 environments"):
+    with pytest.raises(ValueError, match="num_envs is 3; here it is 2"):
         make_vec(env_id, 2).set_state(env.get_state())
+
+
+@pytest.mark.parametrize("changed", [{"control_dt": 0.1}, {"body_kwargs": {"n_elements": 48}}, {"duration": 1.0}])
+def test_state_of_an_environment_made_otherwise_is_refused(env_id, make_vec, changed):
+    env = make_vec(env_id)
+    env.reset(seed=0)
+    before = env.get_state()
+    with pytest.raises(ValueError, match="the state was taken where"):
+        env.set_state(make_vec(env_id, **{"duration": SHORT, **changed}).get_state())
+    assert_same(before["physics"].values(), env.get_state()["physics"].values())
 
 
 def test_pickled_environment_goes_on_alike(env_id, make_vec):
@@ -194,13 +225,18 @@ def test_step_before_reset_says_so(env_id, make_vec):
 @pytest.mark.parametrize(
     ("kwargs", "message"),
     [
-        ({"num_envs": 0}, "num_envs must be from 1 to 4096, not 0"),
-        ({"num_envs": 5000}, "num_envs must be from 1 to 4096, not 5000"),
-        ({"sim_dt": 2e-4}, "time step must be below"),
+        ({"num_envs": 0}, "num_envs must be a whole number from 1 to 4096, not 0"),
+        ({"num_envs": 2.5}, "num_envs must be a whole number from 1 to 4096, not 2.5"),
+        ({"sim_dt": 2e-4}, "sim_dt: the time step must be below"),
         ({"sim_dt": 0.0}, "sim_dt must be a positive number, not 0.0"),
         ({"control_dt": -0.1}, "control_dt must be a positive number, not -0.1"),
         ({"duration": float("nan")}, "duration must be a positive number, not nan"),
+        ({"duration": 0}, "duration must be a positive number, not 0"),
+        ({"n_threads": 0}, "n_threads must be a whole number from 1"),
+        ({"n_threads": -1}, "n_threads must be a whole number from 1"),
+        ({"autoreset_mode": "same_step"}, "autoreset_mode must be .* 'SameStep'"),
         ({"weights": {"speed": 1.0}}, "no term 'speed'"),
+        ({"weights": {"effort": float("nan")}}, "must be a finite number, not nan"),
         ({"body_kwargs": {"n_elements": 3}}, "n_elements must be at least 16, not 3"),
         ({"render_mode": "human"}, "render_mode"),
     ],

@@ -90,10 +90,50 @@ def test_disabled_resets_only_where_asked(env_id, make_vec):
     assert not np.array_equal(after[1], before[1])
 
 
-def test_reset_mask_of_another_kind_is_refused(env_id, make_vec):
-    env = make_vec(env_id, 3, autoreset_mode=AutoresetMode.DISABLED)
-    with pytest.raises(ValueError, match="reset_mask must be 3 booleans"):
-        env.reset(options={"reset_mask": [1, 0]})
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"reset_mask": [1, 0]}, "reset_mask must be 3 booleans"),
+        ({"reset_mask": np.zeros(3, bool)}, "reset_mask must be 3 booleans, at least one"),
+        ({"reset_mask": np.array([True, False, False])}, r"first reset must start every .* leaves out \[1, 2\]"),
+        ({"reset_maks": np.ones(3, bool)}, "options has no 'reset_maks'; there is 'reset_mask'"),
+    ],
+)
+def test_options_that_cannot_be_are_refused(env_id, make_vec, options, message):
+    with pytest.raises(ValueError, match=message):
+        make_vec(env_id, 3, autoreset_mode=AutoresetMode.DISABLED).reset(options=options)
+
+
+def test_infos_say_for_whom_they_are(env_id, make_vec):
+    """As in Gymnasium's own batches: the first observation of an episode comes with an empty info."""
+    for mode in (AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP):
+        env = make_vec(env_id, 2, autoreset_mode=mode)
+        env.reset(seed=0)
+        for _ in range(STEPS - 1):
+            assert env.step(np.zeros((2, 42)))[4]["_distance"].all()
+        info = env.step(np.zeros((2, 42)))[4]
+        if mode == AutoresetMode.NEXT_STEP:
+            assert info["_distance"].all()
+            info = env.step(np.zeros((2, 42)))[4]
+        assert not info["_distance"].any()
+
+
+def test_scripted_policy_survives_anothers_divergence(env_id, make_vec):
+    env = make_vec(env_id, 3, autoreset_mode=AutoresetMode.NEXT_STEP)
+    env.reset(seed=0)
+    env.state.v[1, :, 10] = np.nan
+    for _ in range(3):
+        env.step(env.task.scripted_policy(env))
+    assert np.isfinite(env.pose.head).all()
+
+
+def test_action_of_an_environment_that_begins_is_not_looked_at(env_id, make_vec):
+    env = make_vec(env_id, 2, autoreset_mode=AutoresetMode.NEXT_STEP)
+    env.reset(seed=0)
+    for _ in range(STEPS):
+        env.step(np.zeros((2, 42)))
+    observations = env.step(np.full((2, 42), np.nan))[0]
+    assert np.isfinite(observations).all()
 
 
 @pytest.mark.parametrize("mode", list(AutoresetMode))

@@ -60,7 +60,7 @@ def test_reaching_early_beats_reaching_late_and_hovering(make_vec):
 def test_targets_fill_the_ring_uniformly(make_vec):
     env = make_vec("elastica_gym/SnakeReach-v0", 2000)
     env.reset(seed=0)
-    away = (env.goal - env.pose.centre[:, [0, 2]]) / env.body.senses.length
+    away = (env.goal[:, :2] - env.pose.centre[:, [0, 2]]) / env.body.senses.length
     radius, bearing = np.hypot(*away.T), np.arctan2(*away.T)
     assert radius.min() >= 0.5 and radius.max() <= 1.5
     # uniform over area and bearing: quartiles of each
@@ -73,9 +73,10 @@ def test_forward_pays_for_the_way_along_the_initial_heading(make_vec, sign):
     env = make_vec("elastica_gym/SnakeForward-v0", 2)
     env.reset(seed=3)
     heading = env.goal[:, :2]
-    n = env.body.rods[0].n_elements
+    first = int(env.body.model.first_slot[0])
+    nodes = slice(first, first + env.body.rods[0].n_elements + 1)
     env.state.v[:] = 0.0
-    env.state.v[:, 0, 1 : n + 2], env.state.v[:, 2, 1 : n + 2] = sign * heading[:, :1], sign * heading[:, 1:]
+    env.state.v[:, 0, nodes], env.state.v[:, 2, nodes] = sign * heading[:, :1], sign * heading[:, 1:]
     _, _, _, _, info = env.step(np.zeros((2, 42)))
     assert (sign * info["reward_forward"] > 0.0).all()
     np.testing.assert_allclose(info["reward_forward"], 10.0 * info["distance"] / 0.35, rtol=1e-9)
