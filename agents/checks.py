@@ -14,7 +14,7 @@ EXTRAS = {
         **{"stable-baselines3": "2.9", "torch": "2.3", "tyro": "0.9", "rich": "13"},
         **{"matplotlib": "3.8", "pyyaml": "6"},
     },
-    "viz": {"rerun-sdk": "0.26"},
+    "viz": {"rerun-sdk": "0.41"},
 }
 """Packages that each optional dependency group brings and that are used here, with their lowest versions."""
 

@@ -389,13 +389,13 @@ class BatchEnv(VectorEnv):
 
     # for those who look on
 
-    @property
-    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[misc]
+    @property  # type: ignore[misc]
+    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
         """The generator of each environment; none before the first reset."""
         return tuple(self._generators or ())
 
     @property
-    def np_random_seed(self) -> tuple[int, ...]:
+    def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
         """The seed that each generator was made with."""
         return tuple(self._seeds)
 
