@@ -1,15 +1,18 @@
 """The same scene in PyElastica 1.0.0, built from our own descriptions of rods, planes and waves."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import elastica as ea
 import numpy as np
 
-from elastica_gym.cosserat import Plane, Rod, Wave
+from elastica_gym.cosserat import Control, Model, Plane, Rod, State, Wave, advance, at_rest, build_model
 from elastica_gym.cosserat.model import Array
 
-REST = 1e300
-"""A ramp as short as PyElastica allows stands for none"""
+from .scenes import disturb, motion
+
+NO_RAMP = 1e-300
+"""A ramp as short as PyElastica allows stands for none [s]"""
 
 
 class _Simulator(ea.BaseSystemCollection, ea.Forcing, ea.Damping, ea.Contact):
@@ -42,7 +45,7 @@ class Twin:
             simulator.add_forcing_to(self.rod).using(
                 ea.MuscleTorques, base_length=1.0, b_coeff=np.array(wave.coefficients), period=wave.period,
                 wave_number=wave.wave_number, phase_shift=wave.phase, rest_lengths=rod.rest_length,
-                ramp_up_time=wave.ramp_time or 1.0 / REST, direction=np.array(wave.axis), with_spline=True,
+                ramp_up_time=wave.ramp_time or NO_RAMP, direction=np.array(wave.axis), with_spline=True,
             )  # fmt: skip
         for plane in planes:
             ground = ea.Plane(np.array(plane.origin), plane.normal / np.linalg.norm(plane.normal))
@@ -88,3 +91,36 @@ def _rod(rod: Rod) -> ea.CosseratRod:
         rod.density, youngs_modulus=rod.youngs_modulus, shear_modulus=rod.shear_modulus, position=rod.position.copy(),
         directors=rod.directors.copy(), rest_kappa=rod.rest_kappa.copy(), rest_sigma=rod.rest_sigma.copy(),
     )  # fmt: skip
+
+
+def both(rod: Rod, dt: float, **loads: Any) -> tuple[Model, State, Control, Twin]:
+    """Return a scene of ours, at rest, and its twin."""
+    model = build_model([rod], **loads)
+    return model, *at_rest(model, [rod]), Twin(rod, dt=dt, **loads)
+
+
+def distance(model: Model, state: State, twin: Twin) -> float:
+    """Return the largest difference of positions [m]."""
+    return float(np.abs(motion(model, state)[0] - twin.motion[0]).max())
+
+
+def worst_step(rod: Rod, dt: float, n_states: int, **loads: Any) -> float:
+    """Return how much one step from random states differs.
+
+    For v and w relative to their largest change, for x and Q absolute; the largest of all.
+    """
+    model, state, control, twin = both(rod, dt, **loads)
+    rng = np.random.default_rng(0)
+    worst = 0.0
+    for number in range(n_states):
+        # sliding (in part, where the slip tolerance is large) or sticking
+        disturb(rod, model, state, rng, speed=(1.0, 1e-9)[number % 2])
+        state.time[0] = time = rng.uniform(0.0, 3.0)
+        before = tuple(a.copy() for a in motion(model, state))
+        twin.set_state(*before, time)
+        advance(model, state, control, 0, 1, dt, 1)
+        twin.advance(1)
+        for index, (ours, theirs, start) in enumerate(zip(motion(model, state), twin.motion, before, strict=True)):
+            scale = np.abs(theirs - start).max() if index in (1, 3) else 1.0
+            worst = max(worst, float(np.abs(ours - theirs).max() / scale))
+    return worst

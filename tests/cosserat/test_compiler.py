@@ -21,7 +21,8 @@ RUN = "from elastica_gym.cosserat.kernels.probe import probe; print(probe(1.0))"
 def copied(tmp_path):
     """Copy the physics beside a small kernel, and return the folder that holds the package."""
     package = tmp_path / "elastica_gym"
-    shutil.copytree(ROOT / "elastica_gym" / "cosserat", package / "cosserat", ignore=shutil.ignore_patterns("__pycache__"))
+    without = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "elastica_gym" / "cosserat", package / "cosserat", ignore=without)
     (package / "__init__.py").write_text("")
     (package / "cosserat" / "kernels" / "helper.py").write_text(HELPER.format("1.0"))
     (package / "cosserat" / "kernels" / "probe.py").write_text(PROBE)
@@ -29,9 +30,11 @@ def copied(tmp_path):
 
 
 def start(folder, code, **variables):
-    environment = {**os.environ, "PYTHONPATH": str(folder), "ELASTICA_GYM_CACHE_DIR": str(folder / "cache"), **variables}
-    return subprocess.Popen([sys.executable, "-c", code], env=environment, cwd=folder, text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
+    ours = {"PYTHONPATH": str(folder), "ELASTICA_GYM_CACHE_DIR": str(folder / "cache")}
+    return subprocess.Popen(
+        [sys.executable, "-c", code], env={**os.environ, **ours, **variables}, cwd=folder, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
 
 
 def run(folder, code=RUN, **variables):
@@ -76,7 +79,7 @@ def test_two_cold_processes_at_once(copied):
 
 def test_folder_that_cannot_be_written(copied):
     (copied / "file").write_text("")
-    status, output, errors = run(copied, ELASTICA_GYM_CACHE_DIR=str(copied / "file" / "cache"))
+    status, _, errors = run(copied, ELASTICA_GYM_CACHE_DIR=str(copied / "file" / "cache"))
     assert status != 0
     assert "cannot write compiled kernels" in errors and "ELASTICA_GYM_CACHE_DIR" in errors
 
@@ -129,8 +132,9 @@ def test_stages_are_vectorised(tmp_path):
     if not features.get("fma"):
         pytest.skip("this CPU has no fused multiply-adds on vectors")
     environment = dict(os.environ, ELASTICA_GYM_CACHE_DIR=str(tmp_path), PYTHONPATH=str(ROOT))
-    output = subprocess.run([sys.executable, "-c", ASSEMBLY], env=environment, check=True, capture_output=True, text=True,
-                            timeout=300).stdout  # fmt: skip
+    output = subprocess.run(
+        [sys.executable, "-c", ASSEMBLY], env=environment, check=True, capture_output=True, text=True, timeout=300
+    ).stdout
     counts = {name: int(count) for name, count in (line.split() for line in output.splitlines())}
     assert len(counts) == 11
     assert all(count > 0 for count in counts.values()), counts

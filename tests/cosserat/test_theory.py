@@ -213,8 +213,10 @@ def test_turning_the_world_turns_the_motion(seed):
 @pytest.mark.parametrize(("slenderness", "ratio"), [(0.1, 0.667), (0.5, 0.33), (2.0, 1.0), (8.0, 3.3)])
 def test_stable_time_step(slenderness, ratio):
     n = 16
-    rod = Rod.straight(n, start=(0, 0, 0), direction=(1, 0, 0), normal=(0, 1, 0), length=0.01 * n,
-                       radius=0.01 * slenderness, density=1000.0, youngs_modulus=1e6, shear_modulus=ratio * 1e6)  # fmt: skip
+    rod = Rod.straight(
+        n, start=(0, 0, 0), direction=(1, 0, 0), normal=(0, 1, 0), length=0.01 * n, radius=0.01 * slenderness,
+        density=1000.0, youngs_modulus=1e6, shear_modulus=ratio * 1e6,
+    )  # fmt: skip
     model, bound = build_model([rod]), stable_time_step(rod)
     sizes = []
     for factor in (0.98, 1.02):
