@@ -42,6 +42,7 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | term | weight | formula, a control step |
 |---|---|---|
 | forward | 10 | way of the centre of mass along the initial heading, in body lengths |
+| heading | 2 | cosine of the angle between heading and initial heading, less 1, times the step's duration in seconds |
 | effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
@@ -107,6 +108,11 @@ def forward(situation: Situation) -> Array:
     return made / situation.body.senses.length
 
 
+def heading(situation: Situation) -> Array:
+    """Return the cosine of the angle between heading and direction to go, less 1, times the step's duration [s], (B,)."""
+    return (see_goal(situation)[:, 0] - 1.0) * situation.control_dt
+
+
 def succeeds(situation: Situation) -> Mask:
     """Return whether the animal has come a body length, (B,) bool."""
     return distance(situation) >= situation.body.senses.length
@@ -137,8 +143,8 @@ TASK = Task(
     goal_names=("goal/forward", "goal/right"),
     goal_bounds=((-1.0, 1.0), (-1.0, 1.0)),
     see_goal=see_goal,
-    reward_terms={"forward": forward, "effort": effort},
-    reward_weights={"forward": 10.0, "effort": 0.1, "diverged": -10.0},
+    reward_terms={"forward": forward, "heading": heading, "effort": effort},
+    reward_weights={"forward": 10.0, "heading": 2.0, "effort": 0.1, "diverged": -10.0},
     distance=distance,
     succeeds=succeeds,
     ends_on_success=False,
