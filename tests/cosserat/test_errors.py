@@ -43,7 +43,8 @@ def test_rod_needs_two_elements(n):
 
 
 @pytest.mark.parametrize(("name", "value"), [
-    ("direction", (0, 0, 0)), ("normal", (0, 0, 0)), ("normal", (0, 0, 2)), ("start", (0, 0)), ("start", (0, np.nan, 0)),
+    ("direction", (0, 0, 0)), ("normal", (0, 0, 0)), ("normal", (0, 0, 2)), ("start", (0, 0)),
+    ("start", (0, np.nan, 0)),
 ])  # fmt: skip
 def test_rod_needs_a_place_and_directions(name, value):
     refused(lambda: Rod.straight(4, **{**STRAIGHT, name: value}), name)
