@@ -109,7 +109,7 @@ def forward(situation: Situation) -> Array:
 
 
 def heading(situation: Situation) -> Array:
-    """Return the cosine of the angle between heading and direction to go, less 1, times the step's duration [s], (B,)."""
+    """Return the cosine of the angle off course, less 1, times the duration of the step [s], (B,)."""
     return (see_goal(situation)[:, 0] - 1.0) * situation.control_dt
 
 
