@@ -16,7 +16,7 @@ KEPT = 2
 """How many checkpoints are kept: one more than needed, for the day that the disk damages the last."""
 
 
-def write_checkpoint(checkpoints: Path, steps: int, write_files: Callable[[Path], None]) -> Path:
+def write_checkpoint(checkpoints: Path, steps: int, write_files: Callable[[Path], object]) -> Path:
     """Write a checkpoint and delete all but the last ones.
 
     Parameters
@@ -85,7 +85,7 @@ def find_damage(folder: Path) -> str | None:
     return None
 
 
-def write_atomically(path: Path, write: Callable[[Path], None]) -> None:
+def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` write a file under another name in the same folder and move it to `path` when it is on disk."""
     temporary = path.with_name(f".writing-{path.name}")
     try:

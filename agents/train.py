@@ -63,9 +63,15 @@ def main() -> None:
     arguments = tyro.cli(TrainArguments)
     folder, config = _resumed(arguments) if arguments.resume else _started(arguments)
     # torch takes seconds to import: not before the arguments are known to be good
+    import yaml
+
+    from agents.checkpoints import write_atomically
     from agents.training import Training
 
     training = Training(folder, config, resume=arguments.resume is not None)
+    # what the environment or the algorithm refuses does not get this far, and leaves the folder free
+    text = yaml.safe_dump(config, sort_keys=False)
+    write_atomically(folder / "config.yml", lambda path: path.write_text(text))
     print(f"Training {config['algo']} on {config['env']}, seed {config['seed']}, into {folder}")
     try:
         finished = training.run()
@@ -88,9 +94,7 @@ def _resume_command(folder: Path) -> str:
 
 
 def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
-    """Check the arguments of a new run, make its folder and write its config.yml."""
-    import yaml
-
+    """Check the arguments of a new run and make its folder; return that and what goes into its config.yml."""
     from agents import hyperparameters
 
     choose("environment", arguments.env, environment_ids())
@@ -108,9 +112,7 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     folder = arguments.folder or _new_folder(arguments)
     if (folder / "config.yml").exists():
         raise BadInputError(f"The folder {folder} has a run already: use another, or {_resume_command(folder)}")
-    make_folder(folder)
-    (folder / "config.yml").write_text(yaml.safe_dump(config, sort_keys=False))
-    return folder, config
+    return make_folder(folder), config
 
 
 _NOT_IN_CONFIG = {"set", "config", "n_envs", "out", "folder", "resume"}

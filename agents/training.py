@@ -73,7 +73,7 @@ class Training:
     Parameters
     ----------
     folder
-        The run's folder, which has its ``config.yml`` already.
+        The run's folder, which exists.
     config
         What ``config.yml`` says.
     resume
