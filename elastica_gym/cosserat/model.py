@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 BLOCK = 8
 LEAD = BLOCK
-SCRATCH = 15
+SCRATCH = 16
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

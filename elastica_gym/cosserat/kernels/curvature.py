@@ -46,9 +46,12 @@ def logarithm(n, inv_rest_voronoi_length, cosine, kappa):
 
 @stage
 def bending(
-    n, length, kappa, rest_voronoi_length, B, rest_kappa, rate, target, couple, moment, transport,
+    n, length, kappa, rest_voronoi_length, B, rest_kappa, rate, target, couple, before, after,
 ):  # fmt: skip
-    """Compute tau_L/E^3 and kappa x tau_L D^/E^3 (Gazzola et al. 2018, eq. 2.21); activate the muscles.
+    """Compute the couples on the elements before and after each joint, and activate the muscles.
+
+    Of tau_L/E^3 and of half of kappa x tau_L D^/E^3 (Gazzola et al. 2018, eq. 2.21), the element before gets
+    the sum and the one after the difference.
 
     The muscle couple joins tau_L, so it acts equally and oppositely on the two elements it joins. It
     approaches its target by the fraction ``rate`` a step.
@@ -66,7 +69,7 @@ def bending(
         t1 = (B[1][k] * (k1 - rest_kappa[1][k]) + m1) * inv_E3
         t2 = (B[2][k] * (k2 - rest_kappa[2][k]) + m2) * inv_E3
         couple[0][k], couple[1][k], couple[2][k] = m0, m1, m2
-        moment[0][k], moment[1][k], moment[2][k] = t0, t1, t2
-        transport[0][k] = (k1 * t2 - k2 * t1) * D
-        transport[1][k] = (k2 * t0 - k0 * t2) * D
-        transport[2][k] = (k0 * t1 - k1 * t0) * D
+        half = 0.5 * D
+        c0, c1, c2 = half * (k1 * t2 - k2 * t1), half * (k2 * t0 - k0 * t2), half * (k0 * t1 - k1 * t0)
+        before[0][k], before[1][k], before[2][k] = c0 + t0, c1 + t1, c2 + t2
+        after[0][k], after[1][k], after[2][k] = c0 - t0, c1 - t1, c2 - t2

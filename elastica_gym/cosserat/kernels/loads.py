@@ -6,11 +6,11 @@ from .compiler import FIRST, ONE, stage
 
 
 @stage
-def balance(n, stress, moment, transport, mass, gravity, force, torque):
+def balance(n, stress, before, after, mass, gravity, force, torque):
     """Sum the internal loads and gravity (Gazzola et al. 2018, eq. 2.20, 2.21).
 
-    Differences of n and of tau_L/E^3 between neighbours, and half of each neighbour's
-    kappa x tau_L D^/E^3. Adds to the torques of strains.
+    A node gets the difference of n between its elements, an element the couples of the joints around it:
+    it is the one before the next joint, and after the last. Adds to the torques of strains.
     """
     g0, g1, g2 = gravity[0], gravity[1], gravity[2]
     for k in range(FIRST, n):
@@ -18,9 +18,9 @@ def balance(n, stress, moment, transport, mass, gravity, force, torque):
         force[0][k] = stress[0][k] - stress[0][i] + mass[k] * g0
         force[1][k] = stress[1][k] - stress[1][i] + mass[k] * g1
         force[2][k] = stress[2][k] - stress[2][i] + mass[k] * g2
-        torque[0][k] += moment[0][k] - moment[0][i] + 0.5 * (transport[0][k] + transport[0][i])
-        torque[1][k] += moment[1][k] - moment[1][i] + 0.5 * (transport[1][k] + transport[1][i])
-        torque[2][k] += moment[2][k] - moment[2][i] + 0.5 * (transport[2][k] + transport[2][i])
+        torque[0][k] += before[0][k] + after[0][i]
+        torque[1][k] += before[1][k] + after[1][i]
+        torque[2][k] += before[2][k] + after[2][i]
 
 
 @stage

@@ -27,29 +27,23 @@ def towards(direction, forward, backward):
 
 @stage
 def touch(
-    n, normal, origin, k_plane, nu_plane, surface_tol, x, v, radius, share, weight, force,
-    response, carried, axial,
+    n, normal, origin, k_plane, nu_plane, surface_tol, x, radius, share, force,
+    response, damping, carried, axial,
 ):  # fmt: skip
-    """Compute the plane's response along n, the part of it that carries the element, N, and a."""
+    """Compute the plane's response to push and penetration, how it damps, N, and a."""
     n0, n1, n2 = normal[0], normal[1], normal[2]
     height = n0 * origin[0] + n1 * origin[1] + n2 * origin[2]
     for k in range(FIRST, n):
         j = k + ONE
-        s0, s1, p0, p1 = share[0][k], share[1][k], weight[0][k], weight[1][k]
+        s0, s1 = share[0][k], share[1][k]
         d0, d1, d2 = x[0][j] - x[0][k], x[1][j] - x[1][k], x[2][j] - x[2][k]
         dn = n0 * d0 + n1 * d1 + n2 * d2
-        un = (
-            n0 * (p0 * v[0][k] + p1 * v[0][j])
-            + n1 * (p0 * v[1][k] + p1 * v[1][j])
-            + n2 * (p0 * v[2][k] + p1 * v[2][j])
-        )
         fn = (
             n0 * (s0 * force[0][k] + s1 * force[0][j])
             + n1 * (s0 * force[1][k] + s1 * force[1][j])
             + n2 * (s0 * force[2][k] + s1 * force[2][j])
         )
 
-        # carry the push, and resist penetration and approach
         r = radius[k]
         gap = n0 * x[0][k] + n1 * x[1][k] + n2 * x[2][k] + 0.5 * dn - height - r
         touching = 1.0 if gap <= surface_tol else 0.0
@@ -58,8 +52,7 @@ def touch(
         N = -fn if fn < 0.0 else 0.0
         N *= touching
         depth = gap if gap < 0.0 else 0.0
-        response[k] = N - touching * (k_plane * depth + nu_plane * un)
-        carried[k] = N
+        response[k], damping[k], carried[k] = N - touching * k_plane * depth, touching * nu_plane, N
 
         a0, a1, a2 = d0 - dn * n0, d1 - dn * n1, d2 - dn * n2
         inv_a = inverse_sqrt(a0 * a0 + a1 * a1 + a2 * a2)
@@ -67,10 +60,13 @@ def touch(
 
 
 @stage
-def slip(n, normal, v, Q, w, radius, weight, axial, axial_material, slip_axial, slip_rolling):
+def slip(
+    n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response,
+):  # fmt: skip
     """Compute the velocity of the element's lowest point along a and b, and a in the material frame.
 
-    The point moves with the element and with its spin, W x (-r n) . b = -r W . a.
+    The point moves with the element and with its spin, W x (-r n) . b = -r W . a. Adds to the response
+    what resists the element's velocity along n.
     """
     n0, n1, n2 = normal[0], normal[1], normal[2]
     for k in range(FIRST, n):
@@ -82,6 +78,7 @@ def slip(n, normal, v, Q, w, radius, weight, axial, axial_material, slip_axial, 
         m0 = Q[0][0][k] * a0 + Q[0][1][k] * a1 + Q[0][2][k] * a2
         m1 = Q[1][0][k] * a0 + Q[1][1][k] * a1 + Q[1][2][k] * a2
         m2 = Q[2][0][k] * a0 + Q[2][1][k] * a1 + Q[2][2][k] * a2
+        response[k] -= damping[k] * (u0 * n0 + u1 * n1 + u2 * n2)
         slip_axial[k] = u0 * a0 + u1 * a1 + u2 * a2
         slip_rolling[k] = u0 * b0 + u1 * b1 + u2 * b2 - radius[k] * (w[0][k] * m0 + w[1][k] * m1 + w[2][k] * m2)
         axial_material[0][k], axial_material[1][k], axial_material[2][k] = m0, m1, m2

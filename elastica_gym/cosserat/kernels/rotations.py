@@ -1,8 +1,8 @@
 """Rotation vectors to matrices and back, without trigonometric calls, which do not vectorise.
 
 The coefficients are Chebyshev interpolants computed in 60-digit arithmetic; their errors, relative
-to the function, are below 6e-17 over the stated ranges. Even and odd powers are summed apart: two
-short chains of multiply-adds are done in the time of one.
+to the function, are below 6e-17 over the stated ranges. Powers are summed in two or four parts:
+several short chains of multiply-adds are done in the time of one.
 """
 
 from .compiler import inline
@@ -51,25 +51,26 @@ def half_angle_over_sine(h):
     """
     z = 2.0 * h - 1.0
     zz = z * z
-    even = 1.155596335517553e-10
-    even = even * zz + 4.847870212537191e-10
-    even = even * zz + 5.99775844099466e-09
-    even = even * zz + 5.579896370054702e-08
-    even = even * zz + 5.418287002530394e-07
-    even = even * zz + 5.314300137765282e-06
-    even = even * zz + 5.307369977099968e-05
-    even = even * zz + 0.000544773988660799
-    even = even * zz + 0.005861628974916285
-    even = even * zz + 0.06973319205204817
-    even = even * zz + 1.2091995761561452
-    odd = -3.5494026622357296e-10
-    odd = odd * zz - 1.497309269587466e-09
-    odd = odd * zz - 1.8554844983920357e-08
-    odd = odd * zz - 1.7343078169085141e-07
-    odd = odd * zz - 1.693860323878943e-06
-    odd = odd * zz - 1.6749075819869722e-05
-    odd = odd * zz - 0.0001693099597410185
-    odd = odd * zz - 0.0017729284598670242
-    odd = odd * zz - 0.0198371469225361
-    odd = odd * zz - 0.2636001412812842
-    return odd * z + even
+    zzzz = zz * zz
+    p0 = 1.155596335517553e-10
+    p0 = p0 * zzzz + 5.99775844099466e-09
+    p0 = p0 * zzzz + 5.418287002530394e-07
+    p0 = p0 * zzzz + 5.307369977099968e-05
+    p0 = p0 * zzzz + 0.005861628974916285
+    p0 = p0 * zzzz + 1.2091995761561452
+    p1 = -1.497309269587466e-09
+    p1 = p1 * zzzz - 1.7343078169085141e-07
+    p1 = p1 * zzzz - 1.6749075819869722e-05
+    p1 = p1 * zzzz - 0.0017729284598670242
+    p1 = p1 * zzzz - 0.2636001412812842
+    p2 = 4.847870212537191e-10
+    p2 = p2 * zzzz + 5.579896370054702e-08
+    p2 = p2 * zzzz + 5.314300137765282e-06
+    p2 = p2 * zzzz + 0.000544773988660799
+    p2 = p2 * zzzz + 0.06973319205204817
+    p3 = -3.5494026622357296e-10
+    p3 = p3 * zzzz - 1.8554844983920357e-08
+    p3 = p3 * zzzz - 1.693860323878943e-06
+    p3 = p3 * zzzz - 0.0001693099597410185
+    p3 = p3 * zzzz - 0.0198371469225361
+    return p0 + p1 * z + (p2 + p3 * z) * zz

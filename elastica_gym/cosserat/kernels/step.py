@@ -41,7 +41,7 @@ def internal(model, state, control, i, n, dt):
     m, s, c = model, state, control
     x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
     force, torque, kappa = rows(s.force[i]), rows(s.torque[i]), rows(s.kappa[i])
-    stress, moment, transport = rows(s.scratch[i]), rows(s.scratch[i, 3:]), rows(s.scratch[i, 6:])
+    stress, before, after = rows(s.scratch[i]), rows(s.scratch[i, 3:]), rows(s.scratch[i, 6:])
     inv_length, cosine = s.scratch[i, 9], s.scratch[i, 10]
     rate = 1.0 - exp(-dt / m.activation_time) if m.activation_time > 0.0 else 1.0
 
@@ -51,8 +51,8 @@ def internal(model, state, control, i, n, dt):
     relative_rotation(n, Q, kappa, cosine)
     logarithm(n, m.inv_rest_voronoi_length, cosine, kappa)
     bending(n, s.length[i], kappa, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]), rate,
-            rows(c.couple[i]), rows(s.couple[i]), moment, transport)  # fmt: skip
-    balance(n, stress, moment, transport, m.mass, m.gravity, force, torque)
+            rows(c.couple[i]), rows(s.couple[i]), before, after)  # fmt: skip
+    balance(n, stress, before, after, m.mass, m.gravity, force, torque)
 
 
 @inline
@@ -79,18 +79,19 @@ def ground(model, state, i, n):
     force, torque, radius = rows(s.force[i]), rows(s.torque[i]), s.radius[i]
     push, axial, axial_material = rows(s.scratch[i]), rows(s.scratch[i, 3:]), rows(s.scratch[i, 6:])
     hold, hold_rolling, response, carried = s.scratch[i, 9], s.scratch[i, 10], s.scratch[i, 11], s.scratch[i, 12]
-    slip_axial, slip_rolling = s.scratch[i, 13], s.scratch[i, 14]
+    slip_axial, slip_rolling, damping = s.scratch[i, 13], s.scratch[i, 14], s.scratch[i, 15]
     share, weight = (m.share[0], m.share[1]), (m.weight[0], m.weight[1])
 
     s.normal_force[i, :] = 0.0
     for j in range(p.stiffness.size):
         normal = p.normal[j]
-        touch(n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, v, radius, share,
-              weight, force, response, carried, axial)  # fmt: skip
-        slip(n, normal, v, Q, w, radius, weight, axial, axial_material, slip_axial, slip_rolling)
-        n_sticking = slide(n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j],
-                           slip_axial, slip_rolling, response, carried, radius, axial, axial_material,
-                           push, hold, hold_rolling, torque, s.normal_force[i])  # fmt: skip
+        touch(n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, radius, share,
+              force, response, damping, carried, axial)  # fmt: skip
+        slip(n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response)
+        n_sticking = slide(
+            n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j], slip_axial, slip_rolling,
+            response, carried, radius, axial, axial_material, push, hold, hold_rolling, torque, s.normal_force[i],
+        )  # fmt: skip
         to_nodes(n, push, force)
         if n_sticking > 0:
             stick(n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
