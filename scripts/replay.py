@@ -95,7 +95,7 @@ def run_viewer(arguments: list[str]) -> int:
     """Run rerun's program until it ends or Ctrl-C, which takes it along."""
     # a session of its own: Ctrl-C reaches this script only, which then stops the viewer
     viewer = subprocess.Popen([*viewer_program(), *arguments], env=ENVIRONMENT, start_new_session=True)
-    for ending in {"SIGTERM", "SIGHUP"} & set(dir(signal)):
+    for ending in {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal)):
         signal.signal(getattr(signal, ending), signal.default_int_handler)
     try:
         return viewer.wait()
