@@ -126,7 +126,8 @@ def measure_physics(n: int, n_pairs: int) -> dict[str, Any]:
     ours, theirs = [], []
     for _ in range(n_pairs):
         slices = [(timed(lambda: twin.advance(STEPS_THEIRS)),
-                   timed(lambda: advance(model, state, control, 0, 1, dt, STEPS_OURS))) for _ in range(SLICES)]  # fmt: skip
+                   timed(lambda: advance(model, state, control, 0, 1, dt, STEPS_OURS)))
+                  for _ in range(SLICES)]  # fmt: skip
         best_theirs, best_ours = (min(column) for column in zip(*slices, strict=True))
         theirs.append(best_theirs / STEPS_THEIRS)
         ours.append(best_ours / STEPS_OURS)
