@@ -227,7 +227,7 @@ class BatchEnv(VectorEnv):
     def _advance(self) -> None:
         """Move the animals, and feel where they are."""
         activate(self.body.couples, self.activations, self.control.couple)
-        self._in_threads(self.sim_dt, self.n_substeps)
+        self._advance_physics()
         # the physics does the same to couples, in n_substeps parts
         tau = self.body.muscles.activation_time
         self.levels += (self.activations - self.levels) * (1.0 - np.exp(-self.control_dt / tau))
@@ -240,15 +240,16 @@ class BatchEnv(VectorEnv):
             # what looks on, scripted policies among them, sees the last sound pose
             getattr(self.pose, name)[diverged] = getattr(self._before, name)[diverged]
 
-    def _in_threads(self, dt: float, n_substeps: int) -> None:
+    def _advance_physics(self) -> None:
+        """Run all substeps of a control step, the environments shared among threads."""
         n_threads = min(self.n_threads, self.num_envs)
         borders = [self.num_envs * t // n_threads for t in range(n_threads + 1)]
         spans = list(itertools.pairwise(borders))
         batch = self.body.model, self.state, self.control
         pool = _pool(os.getpid(), n_threads - 1)
-        futures = [pool.submit(advance, *batch, *span, dt, n_substeps) for span in spans[1:]]
+        futures = [pool.submit(advance, *batch, *span, self.sim_dt, self.n_substeps) for span in spans[1:]]
         try:
-            advance(*batch, *spans[0], dt, n_substeps)
+            advance(*batch, *spans[0], self.sim_dt, self.n_substeps)
         finally:
             # also after Ctrl-C: nobody writes State when this returns
             wait(futures)
@@ -264,26 +265,24 @@ class BatchEnv(VectorEnv):
         """Return the rewards and an info with each of their terms; where physics has failed, only the penalty."""
         situation = self.situation()
         rewards, info = np.zeros(self.num_envs), {}
-        with np.errstate(invalid="ignore"):
-            for name, term in self.task.reward_terms.items():
-                value = np.where(sound, self.weights[name] * term(situation), 0.0)
-                info[f"reward_{name}"] = value
-                rewards += value
-            info["reward_diverged"] = np.where(sound, 0.0, self.weights["diverged"])
-            rewards += info["reward_diverged"]
-            self._distance = np.where(sound, self.task.distance(situation), self._distance)
-            info["distance"] = self._distance.copy()
-            info["is_success"] = sound & self.task.succeeds(situation)
+        for name, term in self.task.reward_terms.items():
+            value = np.where(sound, self.weights[name] * term(situation), 0.0)
+            info[f"reward_{name}"] = value
+            rewards += value
+        info["reward_diverged"] = np.where(sound, 0.0, self.weights["diverged"])
+        rewards += info["reward_diverged"]
+        self._distance = np.where(sound, self.task.distance(situation), self._distance)
+        info["distance"] = self._distance.copy()
+        info["is_success"] = sound & self.task.succeeds(situation)
         return rewards, info
 
     def _observe(self, where: Mask | Index) -> None:
         """Write the observations of some environments; the others keep their last ones."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
         situation = self.situation()
-        with np.errstate(invalid="ignore"):
-            columns = np.concatenate(
-                [self._readings, self.levels, np.sin(angle)[:, None], np.cos(angle)[:, None],
-                 situation.time_left[:, None], self.task.see_goal(situation)], axis=1)  # fmt: skip
+        columns = np.concatenate(
+            [self._readings, self.levels, np.sin(angle)[:, None], np.cos(angle)[:, None],
+             situation.time_left[:, None], self.task.see_goal(situation)], axis=1)  # fmt: skip
         self._observations[where] = np.clip(columns[where], self._low, self._high)
 
     # episodes

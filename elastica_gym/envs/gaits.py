@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bodies.body import Body
+from ..cosserat import Rod, Wave
 from ..cosserat.model import Array
 from ..muscles import activations_for, couple_matrix
 
@@ -52,21 +53,14 @@ def _activation_tables(body: Body) -> tuple[Array, Array]:
     """Return the activations of the wave at each phase, (PHASES, 42), and of a bend to the right, (42,)."""
     matrix = couple_matrix(body.muscles, body.rods[0])
     phases = 2.0 * np.pi * np.arange(PHASES) / PHASES
-    wave = activations_for(wave_couples(body.rods[0].n_elements, phases), matrix)
+    wave = activations_for(wave_couples(body.rods[0], phases), matrix)
     turn = activations_for(np.full((1, matrix.shape[2]), TURNING), matrix)
     return wave, turn[0]
 
 
-def wave_couples(n_elements: int, phases: Array) -> Array:
-    """Return the couples of the published gait at given phases of its period [N m], (m, n - 1).
-
-    The amplitude is a cubic B-spline along the body, counted from the head (Gazzola et al. 2018, section 5.2).
-    """
-    # imported here: it takes longer than all else that `import elastica_gym` does
-    from scipy.interpolate import BSpline
-
-    b = np.array(SEED_COEFFICIENTS)
-    knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, len(b) - 2), np.ones(3)])
-    from_head = 1.0 - np.arange(1, n_elements) / n_elements
+def wave_couples(rod: Rod, phases: Array) -> Array:
+    """Return the couples of the published gait at given phases of its period [N m], (m, n - 1)."""
+    published = Wave(coefficients=SEED_COEFFICIENTS, period=SEED_PERIOD, wave_number=2.0 * np.pi)
+    sine, cosine = published.profiles(rod.rest_length)
     # minus: a couple on the element behind and its reverse on the one before are minus the moment inside
-    return -BSpline(knots, b, 3)(from_head) * np.sin(phases[:, None] - 2.0 * np.pi * from_head)
+    return -(np.sin(phases)[:, None] * sine + np.cos(phases)[:, None] * cosine)

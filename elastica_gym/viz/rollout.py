@@ -132,7 +132,7 @@ class Recorder:
         lengths = np.linalg.norm(np.diff(state.x[i], axis=1), axis=0)[self._elements]
         moment = {
             "nodes": state.x[i].T[self._nodes],
-            # at constant volume; State.radius knows only after the first step
+            # at constant volume, of where the nodes are now: State.radius is of half a time step before
             "radii": self._root_section / np.sqrt(lengths),
             "normal_force": state.normal_force[i, self._elements],
             "head": state.x[i, :, env.body.senses.head].copy(),
