@@ -20,7 +20,7 @@ class Senses(NamedTuple):
     nodes: Index
     """Nodes whose position and velocity it feels, (P,) int64"""
     joints: Index
-    """Voronoi points whose curvature and twist it feels, (J,) int64"""
+    """Voronoi points whose curvature and twist it feels, and how the section there has rolled, (J,) int64"""
     skin: Index
     """Borders of the patches of elements whose contact it feels, (S + 1,) int64"""
     front: Index
@@ -71,7 +71,7 @@ class Body:
     def n_readings(self) -> int:
         """How many numbers `feel` writes for one environment."""
         s = self.senses
-        return 6 * s.nodes.size + 3 * s.joints.size + s.skin.size - 1
+        return 6 * s.nodes.size + 5 * s.joints.size + s.skin.size - 1
 
     def reading_names(self) -> tuple[str, ...]:
         """Return the name of each number that `feel` writes."""
@@ -80,6 +80,7 @@ class Body:
             *(f"position/{p}/{axis}" for p in range(s.nodes.size) for axis in axes),
             *(f"velocity/{p}/{axis}" for p in range(s.nodes.size) for axis in axes),
             *(f"curvature/{j}/{axis}" for j in range(s.joints.size) for axis in ("normal", "binormal", "twist")),
+            *(f"roll/{j}/{axis}" for j in range(s.joints.size) for axis in ("normal", "binormal")),
             *(f"contact/{c}" for c in range(s.skin.size - 1)),
         )
 
@@ -135,8 +136,8 @@ def feel(model, state, senses, pose, readings):
 
     Readings, with the heading's forward, up and right axes: positions of nodes from the centre of
     mass in body lengths, their velocities in body lengths a second, curvature and twist in
-    ``curvature_scale``, and the force with which the ground carries each patch of skin, over the
-    weight of an equal share of the body. In a loop over environments rather than in NumPy, whose
+    ``curvature_scale``, the up component of normal and binormal there, and the force with which the ground
+    carries each patch of skin, over the weight of an equal share of the body. In a loop over environments rather than in NumPy, whose
     sums may round differently with the size of the batch.
     """
     n_nodes, n_joints, n_skin = senses.nodes.size, senses.joints.size, senses.skin.size - 1
@@ -182,6 +183,10 @@ def feel(model, state, senses, pose, readings):
         for j in range(n_joints):
             for c in range(3):
                 row[at] = state.kappa[i, c, senses.joints[j]] / senses.curvature_scale
+                at += 1
+        for j in range(n_joints):
+            for c in range(2):
+                row[at] = state.Q[i, c, 1, senses.joints[j]]
                 at += 1
         for s in range(n_skin):
             carried = 0.0

@@ -60,7 +60,7 @@ def snake(n_elements: int = 50) -> Body:
     # friction is kinetic: the original's static coefficients are zero
     ground = Plane(stiffness=1.0, damping=1e-6, kinetic_friction=friction, slip_tolerance=1e-8)
     model = build_model(
-        [rod], planes=[ground], gravity=(0.0, -GRAVITY, 0.0), activation_time=SNAKE.activation_time
+        [rod], planes=[ground], gravity=(0.0, -GRAVITY, 0.0), activation_time=SNAKE.activation_time, is_balanced=True
     )
     start = int(model.first_slot[0])
     couples = np.zeros((N_ACTIVATIONS, 3, model.mass.size))

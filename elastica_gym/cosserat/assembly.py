@@ -14,6 +14,7 @@ from .surroundings import Plane, Wave
 def build_model(
     rods: Sequence[Rod], *, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
     gravity: ArrayLike = (0.0, 0.0, 0.0), activation_time: float = 0.0, is_loaded: bool = False,
+    is_balanced: bool = False,
 ) -> Model:  # fmt: skip
     """Lay rods out one after another and collect what acts on them.
 
@@ -31,6 +32,10 @@ def build_model(
         Time constant with which muscle couples approach those set in Control, 0 for immediately [s].
     is_loaded : bool
         Whether ``Control.force`` and ``Control.torque`` act.
+    is_balanced : bool
+        Whether the couples that a joint exerts on its two elements are exactly opposite, which conserves angular
+        momentum. By default they are as documented (Gazzola et al. 2018, eq. 2.21) and PyElastica has them: in three
+        dimensions opposite but for the third order of the joint's angle.
 
     Raises
     ------
@@ -56,7 +61,7 @@ def build_model(
     return Model(
         first_slot=first.astype(np.int64), n_elements=counts.astype(np.int64), **fields,
         gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_viscous=bool(fields["viscosity"].any()),
-        activation_time=float(activation_time), planes=_plane_table(planes),
+        is_balanced=is_balanced, activation_time=float(activation_time), planes=_plane_table(planes),
         waves=_wave_table(waves, rods, first, slots),
     )  # fmt: skip
 

@@ -104,6 +104,8 @@ class Model(NamedTuple):
     """Whether the external loads of Control act"""
     is_viscous: bool
     """Whether any viscosity is not zero"""
+    is_balanced: bool
+    """Whether the two couples of a joint are exactly opposite in the lab, which conserves angular momentum"""
     activation_time: float
     """Time constant of muscle activation, 0 for immediate [s]"""
     planes: Planes

@@ -24,8 +24,8 @@ from .task import Mask, Situation, Task
 
 CONTROL_DT = 0.05
 CLOCK_PERIOD = 1.0
-# least and largest value of positions, velocities, curvatures and contact in observations
-READING_BOUNDS = ((-1.0, 1.0), (-20.0, 20.0), (-10.0, 10.0), (0.0, 50.0))
+# least and largest value of positions, velocities, curvatures, rolls and contact in observations
+READING_BOUNDS = ((-1.0, 1.0), (-20.0, 20.0), (-10.0, 10.0), (-1.0, 1.0), (0.0, 50.0))
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length")
 
@@ -104,7 +104,8 @@ class BatchEnv(VectorEnv):
 
     def _make_spaces(self) -> None:
         senses = self.body.senses
-        counts = (3 * senses.nodes.size, 3 * senses.nodes.size, 3 * senses.joints.size, senses.skin.size - 1)
+        nodes, joints = senses.nodes.size, senses.joints.size
+        counts = (3 * nodes, 3 * nodes, 3 * joints, 2 * joints, senses.skin.size - 1)
         bounds = np.concatenate([
             np.repeat(READING_BOUNDS, counts, axis=0), np.repeat([(-1.0, 1.0)], N_ACTIVATIONS + 2, axis=0),
             [(0.0, 1.0)], self.task.goal_bounds,

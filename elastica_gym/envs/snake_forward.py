@@ -29,11 +29,12 @@ seen from above with y up.
 | 0-26 | position of 9 nodes, tail to head, from the centre of mass: forward, up, right | body length | -1 to 1 |
 | 27-53 | their velocity: forward, up, right of each | body lengths/s | -20 to 20 |
 | 54-83 | curvature about the normal and binormal, and twist, at 10 places, tail to head | 10/m | -10 to 10 |
-| 84-91 | force with which the ground carries each of 8 parts, tail to head | an 8th of the weight | 0 to 50 |
-| 92-133 | activation that each muscle has reached, in the order of the actions | 1 | -1 to 1 |
-| 134-135 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
-| 136 | part of the episode that is left | 1 | 0 to 1 |
-| 137-138 | direction to go: forward and right component of a unit vector | 1 | -1 to 1 |
+| 84-103 | up component of normal and binormal there: how the body has rolled | 1 | -1 to 1 |
+| 104-111 | force with which the ground carries each of 8 parts, tail to head | an 8th of the weight | 0 to 50 |
+| 112-153 | activation that each muscle has reached, in the order of the actions | 1 | -1 to 1 |
+| 154-155 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
+| 156 | part of the episode that is left | 1 | 0 to 1 |
+| 157-158 | direction to go: forward and right component of a unit vector | 1 | -1 to 1 |
 
 Rewards
 -------
@@ -42,7 +43,7 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | term | weight | formula, a control step |
 |---|---|---|
 | forward | 10 | way of the centre of mass along the initial heading, in body lengths |
-| heading | 2 | cosine of the angle between heading and initial heading, less 1, times the step's duration in seconds |
+| heading | 3 | by how much the angle between heading and initial heading has shrunk, in radians |
 | effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
@@ -108,9 +109,14 @@ def forward(situation: Situation) -> Array:
     return made / situation.body.senses.length
 
 
+def _off_course(goal: Array, heading: Array) -> Array:
+    x, z = heading[:, 0], heading[:, 1]
+    return np.abs(np.arctan2(goal[:, 0] * z - goal[:, 1] * x, goal[:, 0] * x + goal[:, 1] * z))
+
+
 def heading(situation: Situation) -> Array:
-    """Return the cosine of the angle off course, less 1, times the duration of the step [s], (B,)."""
-    return (see_goal(situation)[:, 0] - 1.0) * situation.control_dt
+    """Return by how much the angle between heading and initial heading has shrunk in this step [rad], (B,)."""
+    return _off_course(situation.goal, situation.before.heading) - _off_course(situation.goal, situation.pose.heading)
 
 
 def succeeds(situation: Situation) -> Mask:
@@ -144,7 +150,7 @@ TASK = Task(
     goal_bounds=((-1.0, 1.0), (-1.0, 1.0)),
     see_goal=see_goal,
     reward_terms={"forward": forward, "heading": heading, "effort": effort},
-    reward_weights={"forward": 10.0, "heading": 2.0, "effort": 0.1, "diverged": -10.0},
+    reward_weights={"forward": 10.0, "heading": 3.0, "effort": 0.1, "diverged": -10.0},
     distance=distance,
     succeeds=succeeds,
     ends_on_success=False,

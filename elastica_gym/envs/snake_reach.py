@@ -29,12 +29,13 @@ seen from above with y up.
 | 0-26 | position of 9 nodes, tail to head, from the centre of mass: forward, up, right | body length | -1 to 1 |
 | 27-53 | their velocity: forward, up, right of each | body lengths/s | -20 to 20 |
 | 54-83 | curvature about the normal and binormal, and twist, at 10 places, tail to head | 10/m | -10 to 10 |
-| 84-91 | force with which the ground carries each of 8 parts, tail to head | an 8th of the weight | 0 to 50 |
-| 92-133 | activation that each muscle has reached, in the order of the actions | 1 | -1 to 1 |
-| 134-135 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
-| 136 | part of the episode that is left | 1 | 0 to 1 |
-| 137-138 | way from head to target: forward and right | body length | -4 to 4 |
-| 139 | its length | body length | 0 to 4 |
+| 84-103 | up component of normal and binormal there: how the body has rolled | 1 | -1 to 1 |
+| 104-111 | force with which the ground carries each of 8 parts, tail to head | an 8th of the weight | 0 to 50 |
+| 112-153 | activation that each muscle has reached, in the order of the actions | 1 | -1 to 1 |
+| 154-155 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
+| 156 | part of the episode that is left | 1 | 0 to 1 |
+| 157-158 | way from head to target: forward and right | body length | -4 to 4 |
+| 159 | its length | body length | 0 to 4 |
 
 Rewards
 -------

@@ -86,9 +86,9 @@ def momenta(rod, model, state):
     return (m * v).sum(axis=1), (m * np.cross(x, v, axis=0)).sum(axis=1) + spin.sum(axis=1)
 
 
-def driven(rod, couples):
+def driven(rod, couples, **options):
     """Return the change of a free rod's momenta in 0.05 s, in which its muscles get to ``couples``."""
-    model = build_model([rod], activation_time=0.02)
+    model = build_model([rod], activation_time=0.02, **options)
     state, control = at_rest(model, [rod])
     start = int(model.first_slot[0])
     control.couple[0, :, start : start + rod.n_elements - 1] = couples
@@ -101,48 +101,46 @@ def driven(rod, couples):
 
 def test_muscles_conserve_momentum():
     phase = np.linspace(0.0, 6.0, 49)
-    bend = 3e-4 * np.sin(phase)
-    momentum, angular_momentum = driven(snake(), [bend, 0.0 * bend, 0.0 * bend])
+    bend = 1e-3 * np.sin(phase)
+    in_space = [bend, np.cos(phase) * bend, np.sin(2.0 * phase) * bend]
+    momentum, angular_momentum = driven(snake(), in_space, is_balanced=True)
     assert momentum < 1e-12
     assert angular_momentum < 1e-12
     # in space, the documented model itself lets go of angular momentum in third order of the angle at a joint
-    momentum, angular_momentum = driven(snake(), [bend, np.cos(phase) * bend, np.sin(2.0 * phase) * bend])
+    momentum, documented = driven(snake(), in_space)
     assert momentum < 1e-12
-    assert angular_momentum < 1e-10
+    assert 1e2 * angular_momentum < documented < 1e-8
+    momentum, angular_momentum = driven(snake(), [bend, 0.0 * bend, 0.0 * bend])
+    assert momentum < 1e-12
+    assert angular_momentum < 1e-12
 
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.booleans())
-def test_internal_loads_balance(seed, is_planar):
+def test_internal_loads_balance(seed, is_balanced):
     """Whatever the shape and the muscles, internal forces are in balance, and so are torques.
 
-    Torques in space only to third order of the angle at a joint: the documented model takes half of
-    kappa x tau D for the turn of tau from a joint to its elements.
+    Torques in space only if the model is balanced: the documented one takes half of kappa x tau D for
+    the turn of tau from a joint to its elements, which is right to third order of the joint's angle.
     """
     rod, rng = kinked(rest_kappa=np.zeros((3, 39))), np.random.default_rng(seed)
-    model = build_model([rod])
+    model = build_model([rod], is_balanced=is_balanced)
     state, control = at_rest(model, [rod])
     start, n = int(model.first_slot[0]), rod.n_elements
     couples = 1e-2 * rng.standard_normal((3, n - 1))
-    turns = 0.05 * rng.standard_normal((n, 3))
     x, _, Q, _ = motion(model, state)
     x += 3e-4 * rng.standard_normal((3, n + 1))
-    if is_planar:
-        x[0], couples[1:], turns[:, 1:] = 0.0, 0.0, 0.0
-    Q[:] = np.einsum("kij,jlk->ilk", rotations(turns), Q)
+    Q[:] = np.einsum("kij,jlk->ilk", rotations(0.2 * rng.standard_normal((n, 3))), Q)
     control.couple[0, :, start : start + n - 1] = couples
     advance(model, state, control, 0, 1, 1e-30, 1)
 
     force, torque = state.force[0, :, start : start + n + 1], state.torque[0, :, start : start + n]
     assert np.abs(force.sum(axis=1)).max() < 1e-12 * np.abs(force).sum()
     lever, lab = np.cross(x, force, axis=0), np.einsum("jik,jk->ik", Q, torque)
-    rest = np.linalg.norm(lever.sum(axis=1) + lab.sum(axis=1))
-    kappa = state.kappa[0, :, start : start + n - 1]
-    bound = 1e-12 * (np.abs(lever).sum() + np.abs(lab).sum())
-    if not is_planar:
-        half_turn = 0.5 * np.linalg.norm(kappa * rod.rest_voronoi_length, axis=0)
-        bound += (half_turn**3 * np.linalg.norm(rod.bend_stiffness * kappa + couples, axis=0)).sum()
-    assert rest < bound
+    rest = np.linalg.norm(lever.sum(axis=1) + lab.sum(axis=1)) / (np.abs(lever).sum() + np.abs(lab).sum())
+    assert rest < (1e-12 if is_balanced else 1e-2)
+    if not is_balanced:
+        assert rest > 1e-9
 
 
 def energy(rod, model, state):

@@ -24,6 +24,21 @@ def test_first_observation_knows_curvature_and_contact(make_vec):
     np.testing.assert_allclose(columns(env, observations, "contact/").mean(axis=1), 1.0, rtol=1e-6)
 
 
+def test_roll_is_felt(make_vec):
+    env = make_vec(FORWARD, 2)
+    observations, _ = env.reset(seed=0)
+    felt = columns(env, observations, "roll/")
+    np.testing.assert_allclose(felt[:, 0::2], 1.0, atol=1e-6)
+    np.testing.assert_allclose(felt[:, 1::2], 0.0, atol=1e-6)
+    twist = np.zeros((2, 42))
+    twist[:, [28, 35]] = 1.0, -1.0
+    for _ in range(20):
+        observations, *_ = env.step(twist)
+    felt = columns(env, observations, "roll/").reshape(2, -1, 2)
+    np.testing.assert_allclose(np.hypot(felt[..., 0], felt[..., 1]), 1.0, atol=1e-2)
+    assert np.abs(felt[..., 1]).max() > 0.1
+
+
 def test_a_step_of_no_duration_moves_nothing(make_vec):
     env = make_vec(FORWARD, 2)
     env.reset(seed=0)

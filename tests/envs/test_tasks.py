@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
+from elastica_gym.envs.gaits import snake_crawl
+
 SEEDS = 20
 
 
@@ -80,3 +82,17 @@ def test_forward_pays_for_the_way_along_the_initial_heading(make_vec, sign):
     _, _, _, _, info = env.step(np.zeros((2, 42)))
     assert (sign * info["reward_forward"] > 0.0).all()
     np.testing.assert_allclose(info["reward_forward"], 10.0 * info["distance"] / 0.35, rtol=1e-9)
+
+
+def test_heading_pays_for_turning_back_and_costs_as_much_for_turning_away(make_vec):
+    env = make_vec("elastica_gym/SnakeForward-v0", 2, duration=2.0)
+    env.reset(seed=3)
+    total, off_course = np.zeros(2), np.zeros(2)
+    for step in range(30):
+        _, _, _, _, info = env.step(snake_crawl(env, np.full(2, 1.0 if step < 20 else -1.0)))
+        total += info["reward_heading"]
+        cosine = (env.pose.heading * env.goal[:, :2]).sum(axis=1)
+        assert (info["reward_heading"] > 0.0).tolist() == (np.arccos(cosine) < off_course).tolist()
+        off_course = np.arccos(cosine)
+    np.testing.assert_allclose(total, -3.0 * off_course, atol=1e-6)
+    assert (off_course > 0.1).all()

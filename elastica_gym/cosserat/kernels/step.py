@@ -42,15 +42,15 @@ def internal(model, state, control, i, n, dt):
     x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
     force, torque, kappa = rows(s.force[i]), rows(s.torque[i]), rows(s.kappa[i])
     stress, before, after = rows(s.scratch[i]), rows(s.scratch[i, 3:]), rows(s.scratch[i, 6:])
-    inv_length, cosine = s.scratch[i, 9], s.scratch[i, 10]
+    inv_length, cosine, lever = s.scratch[i, 9], s.scratch[i, 10], rows(s.scratch[i, 11:])
     rate = 1.0 - exp(-dt / m.activation_time) if m.activation_time > 0.0 else 1.0
 
     stretch(n, x, m.volume_root, s.length[i], inv_length, s.radius[i])
     strains(n, x, v, Q, w, inv_length, m.rest_length, m.inv_rest_length, rows(c.rest_sigma[i]), rows(m.shear),
             rows(m.inertia), stress, torque)  # fmt: skip
     relative_rotation(n, Q, kappa, cosine)
-    logarithm(n, m.inv_rest_voronoi_length, cosine, kappa)
-    bending(n, s.length[i], kappa, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]), rate,
+    logarithm(n, m.is_balanced, m.inv_rest_voronoi_length, cosine, kappa, lever)
+    bending(n, s.length[i], kappa, lever, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]), rate,
             rows(c.couple[i]), rows(s.couple[i]), before, after)  # fmt: skip
     balance(n, stress, before, after, m.mass, m.gravity, force, torque)
 
