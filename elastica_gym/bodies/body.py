@@ -137,8 +137,8 @@ def feel(model, state, senses, pose, readings):
     Readings, with the heading's forward, up and right axes: positions of nodes from the centre of
     mass in body lengths, their velocities in body lengths a second, curvature and twist in
     ``curvature_scale``, the up component of normal and binormal there, and the force with which the ground
-    carries each patch of skin, over the weight of an equal share of the body. In a loop over environments rather than in NumPy, whose
-    sums may round differently with the size of the batch.
+    carries each patch of skin, over the weight of an equal share of the body. In a loop over environments
+    rather than in NumPy, whose sums may round differently with the size of the batch.
     """
     n_nodes, n_joints, n_skin = senses.nodes.size, senses.joints.size, senses.skin.size - 1
     inv_length = 1.0 / senses.length
