@@ -129,7 +129,8 @@ def cylinders_on_planes(dt, cylinders, planes, x, v, directors, w, contact, forc
                     contact[b, number, a] = 0.0
                 add(force[b], N, n)
                 add(torque[b], N, to_material(Q, cross(arm, n)))
-            if touching and c.ground_friction[b] > 0.0:
+            # (a step of no duration stops nothing)
+            if touching and c.ground_friction[b] > 0.0 and dt > 0.0:
                 rub(contact[b], c.ground_friction[b], n, Q, length, radius, c.mass[b], J, velocity, vector(w[b]),
                     force[b], torque[b], dt)  # fmt: skip
 
