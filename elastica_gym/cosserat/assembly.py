@@ -6,15 +6,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .model import BLOCK, LEAD, Array, Control, Model, Planes, State, Waves, aligned_zeros, make_control, make_state
+from .model import (
+    BLOCK,
+    LEAD,
+    Array,
+    Control,
+    Cylinders,
+    Model,
+    Planes,
+    RodContact,
+    State,
+    Waves,
+    aligned_zeros,
+    make_control,
+    make_state,
+)
 from .rod import Rod, require_finite, require_not_negative
-from .surroundings import Plane, Wave
+from .surroundings import Contact, Cylinder, Plane, Wave
 
 
 def build_model(
     rods: Sequence[Rod], *, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
     gravity: ArrayLike = (0.0, 0.0, 0.0), activation_time: float = 0.0, is_loaded: bool = False,
     is_balanced: bool = False,
+    cylinders: Sequence[Cylinder] = (), rod_contact: Contact | None = None,
 ) -> Model:  # fmt: skip
     """Lay rods out one after another and collect what acts on them.
 
@@ -36,6 +51,11 @@ def build_model(
         Whether the couples that a joint exerts on its two elements are exactly opposite, which conserves angular
         momentum. By default they are as documented (Gazzola et al. 2018, eq. 2.21) and PyElastica has them: in three
         dimensions opposite but for the third order of the joint's angle.
+    cylinders : sequence of Cylinder
+        Touched by all rods and planes, not by each other.
+    rod_contact : Contact, optional
+        How elements of two rods touch, and those of one that are far enough from each other along
+        it; without, rods pass through rods.
 
     Raises
     ------
@@ -62,7 +82,8 @@ def build_model(
         first_slot=first.astype(np.int64), n_elements=counts.astype(np.int64), **fields,
         gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_viscous=bool(fields["viscosity"].any()),
         is_balanced=is_balanced, activation_time=float(activation_time), planes=_plane_table(planes),
-        waves=_wave_table(waves, rods, first, slots),
+        waves=_wave_table(waves, rods, first, slots), cylinders=_cylinder_table(cylinders),
+        rod_contact=_rod_contact(rod_contact, counts, first, slots),
     )  # fmt: skip
 
 
@@ -122,8 +143,46 @@ def _wave_table(waves: Sequence[Wave], rods: Sequence[Rod], first: np.ndarray, s
     )  # fmt: skip
 
 
-def at_rest(model: Model, rods: Sequence[Rod], n_envs: int = 1) -> tuple[State, Control]:
-    """Allocate State and Control, with every rod where it was described, at rest, in all environments."""
+def _cylinder_table(cylinders: Sequence[Cylinder]) -> Cylinders:
+    def column(name: str) -> Array:
+        return np.array([getattr(cylinder, name) for cylinder in cylinders], dtype=np.float64)
+
+    def rods(name: str) -> Array:
+        return np.array([getattr(cylinder.rods, name) for cylinder in cylinders], dtype=np.float64)
+
+    return Cylinders(
+        length=column("length"), radius=column("radius"), mass=column("mass"),
+        inertia=column("inertia").reshape(len(cylinders), 3), ground_stiffness=column("ground_stiffness"),
+        ground_damping=column("ground_damping"), ground_friction=column("ground_friction"),
+        rod_stiffness=rods("stiffness"), rod_damping=rods("damping"), rod_friction=rods("friction"),
+        rod_slip_damping=rods("slip_damping"),
+    )  # fmt: skip
+
+
+def _rod_contact(contact: Contact | None, counts: np.ndarray, first: np.ndarray, slots: int) -> RodContact:
+    rod_of = aligned_zeros((slots,), np.int64)
+    for rod, (start, n) in enumerate(zip(first, counts, strict=True)):
+        rod_of[start : start + n + 1] = rod
+    if contact is None:
+        return RodContact(is_on=False, stiffness=0.0, damping=0.0, friction=0.0, slip_damping=0.0, rod_of=rod_of)
+    return RodContact(
+        is_on=True, stiffness=float(contact.stiffness), damping=float(contact.damping),
+        friction=float(contact.friction), slip_damping=float(contact.slip_damping), rod_of=rod_of,
+    )  # fmt: skip
+
+
+def at_rest(
+    model: Model, rods: Sequence[Rod], n_envs: int = 1, *, cylinders: Sequence[Cylinder] = ()
+) -> tuple[State, Control]:
+    """Allocate State and Control, with every rod and cylinder where it was described, at rest, in all environments.
+
+    Raises
+    ------
+    ValueError
+        If the model has another number of cylinders.
+    """
+    if len(cylinders) != model.cylinders.mass.size:
+        raise ValueError(f"cylinders must be the {model.cylinders.mass.size} of the model, not {len(cylinders)}")
     state, control = make_state(model, n_envs), make_control(model, n_envs)
     for rod, start in zip(rods, model.first_slot, strict=True):
         n = rod.n_elements
@@ -131,4 +190,6 @@ def at_rest(model: Model, rods: Sequence[Rod], n_envs: int = 1) -> tuple[State, 
         state.Q[:, :, :, start : start + n] = rod.directors
         control.rest_kappa[:, :, start : start + n - 1] = rod.rest_kappa
         control.rest_sigma[:, :, start : start + n] = rod.rest_sigma
+    for b, cylinder in enumerate(cylinders):
+        state.body_x[:, b], state.body_Q[:, b] = cylinder.centre, cylinder.directors
     return state, control

@@ -60,6 +60,50 @@ class Waves(NamedTuple):
     """Time over which the wave grows linearly to full strength, 0 for none [s], (W,)"""
 
 
+class Cylinders(NamedTuple):
+    """The C free rigid cylinders. Their axis is d3, their position the centre of mass."""
+
+    length: Array
+    """From end to end [m], (C,)"""
+    radius: Array
+    """[m], (C,)"""
+    mass: Array
+    """[kg], (C,)"""
+    inertia: Array
+    """Diagonal of the moment of inertia J: m (3 r^2 + L^2)/12 twice, m r^2/2 [kg m^2], (C, 3)"""
+    ground_stiffness: Array
+    """Restoring force per penetration of a plane at each point of contact [N/m], (C,)"""
+    ground_damping: Array
+    """Damping force per velocity along the plane's normal at each point of contact [N s/m], (C,)"""
+    ground_friction: Array
+    """Coefficient of Coulomb friction with planes, (C,)"""
+    rod_stiffness: Array
+    """Restoring force per overlap with a rod's element k [N/m], (C,)"""
+    rod_damping: Array
+    """Damping force per velocity of approach nu [N s/m], (C,)"""
+    rod_friction: Array
+    """Coefficient of Coulomb friction with rods, (C,)"""
+    rod_slip_damping: Array
+    """Force of friction per slip below the Coulomb bound c [N s/m], (C,)"""
+
+
+class RodContact(NamedTuple):
+    """How elements of rods touch each other."""
+
+    is_on: bool
+    """Whether they do"""
+    stiffness: float
+    """Restoring force per overlap k [N/m]"""
+    damping: float
+    """Damping force per velocity of approach nu [N s/m]"""
+    friction: float
+    """Coefficient of Coulomb friction mu"""
+    slip_damping: float
+    """Force of friction per slip below the Coulomb bound c [N s/m]"""
+    rod_of: Index
+    """The rod that a slot belongs to, (L,) int64"""
+
+
 class Model(NamedTuple):
     """What does not change during an episode."""
 
@@ -110,10 +154,12 @@ class Model(NamedTuple):
     """Time constant of muscle activation, 0 for immediate [s]"""
     planes: Planes
     waves: Waves
+    cylinders: Cylinders
+    rod_contact: RodContact
 
 
 class State(NamedTuple):
-    """What a step changes. The first seven fields are the state proper, the rest is derived from it."""
+    """What a step changes. The first seven fields and the bodies' motion are the state proper, the rest follows."""
 
     x: Array
     """Node position [m], lab frame, (B, 3, L)"""
@@ -145,6 +191,24 @@ class State(NamedTuple):
     """What the stages of a step hand on to each other, (B, SCRATCH, L)"""
     decay: Array
     """exp(-c dt) by node and element, (B, L)"""
+    body_x: Array
+    """Position of a body's centre of mass [m], lab frame, (B, C, 3)"""
+    body_v: Array
+    """Its velocity [m/s], lab frame, (B, C, 3)"""
+    body_Q: Array  # noqa: N815
+    """Its directors: rows d1, d2, d3 in the lab, (B, C, 3, 3)"""
+    body_w: Array
+    """Its angular velocity [rad/s], material frame, (B, C, 3)"""
+    body_force: Array
+    """Net force on it [N], lab frame, (B, C, 3)"""
+    body_torque: Array
+    """Net torque on it about its centre [N m], material frame, (B, C, 3)"""
+    body_contact: Array
+    """At each point that may touch a plane, the normal force and the force of friction in the lab, both with the
+    last plane [N], (B, C, 6, 4)"""
+    order: Index
+    """Slots of the E elements that may touch others, in the order of a sweep: any order will do, the
+    right one is the fastest; (B, E) int64"""
 
 
 class Control(NamedTuple):
@@ -183,10 +247,16 @@ def make_state(model: Model, n_envs: int = 1) -> State:
     vector, scalar = (n_envs, 3, slots), (n_envs, slots)
     shapes = {"Q": (n_envs, 3, 3, slots), "time": (n_envs,), "scratch": (n_envs, SCRATCH, slots),
               "length": scalar, "radius": scalar, "normal_force": scalar, "decay": scalar}
-    state = State(*(aligned_zeros((n_envs,), np.int64) if name == "step" else aligned_zeros(shapes.get(name, vector))
+    n_bodies = model.cylinders.mass.size
+    shapes |= {name: (n_envs, n_bodies, 3) for name in State._fields if name.startswith("body_")}
+    shapes |= {"body_Q": (n_envs, n_bodies, 3, 3), "body_contact": (n_envs, n_bodies, 6, 4)}
+    elements = _elements(model) if model.rod_contact.is_on else np.zeros(0, dtype=np.int64)
+    shapes |= {"step": (n_envs,), "order": (n_envs, elements.size)}
+    state = State(*(aligned_zeros(shapes.get(name, vector), np.int64 if name in ("step", "order") else np.float64)
                     for name in State._fields))
     for i in range(3):
-        state.Q[:, i, i] = 1.0
+        state.Q[:, i, i] = state.body_Q[:, :, i, i] = 1.0
+    state.order[:] = elements
     _assert_disjoint(state)
     return state
 
@@ -198,7 +268,13 @@ def make_control(model: Model, n_envs: int = 1) -> Control:
     return control
 
 
+def _elements(model: Model) -> Index:
+    """Return the slots of all elements, (E,)."""
+    slots = [start + np.arange(n) for start, n in zip(model.first_slot, model.n_elements, strict=True)]
+    return np.concatenate(slots).astype(np.int64)
+
+
 def _assert_disjoint(arrays: State | Control) -> None:
     """Assert what the stages promise the compiler: no two arrays overlap."""
-    spans = sorted((a.ctypes.data, a.ctypes.data + a.nbytes) for a in arrays)
+    spans = sorted((a.ctypes.data, a.ctypes.data + a.nbytes) for a in arrays if a.size)
     assert all(end <= start for (_, end), (start, _) in pairwise(spans))

@@ -1,4 +1,4 @@
-"""What rods meet: planes with anisotropic friction, and travelling waves of muscle couple."""
+"""What rods meet: planes with anisotropic friction, cylinders, each other, and travelling waves of muscle couple."""
 
 from dataclasses import dataclass
 
@@ -6,6 +6,8 @@ import numpy as np
 
 from .model import Array
 from .rod import require_finite, require_not_negative, require_positive
+
+Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +52,112 @@ class Plane:
             require_finite(name, getattr(self, name), 3)
             for direction, value in zip(("forward", "backward", "sideways"), getattr(self, name), strict=True):
                 require_not_negative(f"{name} {direction}", value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contact:
+    """How two round things push and rub each other where they overlap.
+
+    The normal force is ``stiffness`` times the overlap and ``damping`` times the velocity of
+    approach, and never pulls. Friction is ``slip_damping`` times the slip, up to ``friction`` times
+    the normal force (Coulomb's law; Preclik, Popa and Ruede 2011): what sticks creeps by the force
+    it bears over ``slip_damping``, which must stay below the lighter one's mass over the time step.
+
+    Attributes
+    ----------
+    stiffness : float
+        Restoring force per overlap k [N/m].
+    damping : float
+        Damping force per velocity of approach nu [N s/m].
+    friction : float
+        Coefficient of Coulomb friction mu.
+    slip_damping : float
+        Force of friction per slip c, below the Coulomb bound [N s/m].
+    """
+
+    stiffness: float
+    damping: float = 0.0
+    friction: float = 0.0
+    slip_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_positive("stiffness", self.stiffness)
+        for name in ("damping", "friction", "slip_damping"):
+            require_not_negative(name, getattr(self, name))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cylinder:
+    """A free rigid cylinder: it has weight, stands, tips, rolls and slides on planes, and rods push it.
+
+    Rods meet it as a capsule, whose ends are domes; planes at the rims of its flat ends.
+
+    Attributes
+    ----------
+    start : tuple of float
+        Centre of its first end [m].
+    direction : tuple of float
+        From its first end to its second, d3; of any length.
+    normal : tuple of float
+        d1, perpendicular to ``direction``; of any length.
+    length : float
+        [m]
+    radius : float
+        [m]
+    mass : float
+        [kg]
+    rods : Contact
+        How rods touch it.
+    ground_stiffness : float
+        Restoring force per penetration of a plane at each point of contact [N/m].
+    ground_damping : float
+        Damping force per velocity along the plane's normal at each point of contact [N s/m].
+    ground_friction : float
+        Coefficient of Coulomb friction with planes; it sticks without creeping.
+    """
+
+    start: Vector
+    direction: Vector
+    normal: Vector
+    length: float
+    radius: float
+    mass: float
+    rods: Contact
+    ground_stiffness: float
+    ground_damping: float = 0.0
+    ground_friction: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("start", "direction", "normal"):
+            require_finite(name, getattr(self, name), 3)
+        for name in ("length", "radius", "mass", "ground_stiffness"):
+            require_positive(name, getattr(self, name))
+        for name in ("ground_damping", "ground_friction"):
+            require_not_negative(name, getattr(self, name))
+        for name in ("direction", "normal"):
+            require_positive(f"length of {name}", float(np.linalg.norm(getattr(self, name))))
+        cosine = float(np.dot(self.normal, self.directors[2]) / np.linalg.norm(self.normal))
+        if abs(cosine) > 1e-9:
+            raise ValueError(f"normal {self.normal} must be perpendicular to direction {self.direction}; "
+                             f"the cosine between them is {cosine:.3g}")  # fmt: skip
+
+    @property
+    def directors(self) -> Array:
+        """Rows d1, d2, d3 in the lab, (3, 3)."""
+        d3 = np.asarray(self.direction, dtype=np.float64) / np.linalg.norm(self.direction)
+        d1 = np.asarray(self.normal, dtype=np.float64) / np.linalg.norm(self.normal)
+        return np.array([d1, np.cross(d3, d1), d3])
+
+    @property
+    def centre(self) -> Array:
+        """Centre of mass [m], (3,)."""
+        return np.asarray(self.start, dtype=np.float64) + 0.5 * self.length * self.directors[2]
+
+    @property
+    def inertia(self) -> Array:
+        """Diagonal of the moment of inertia J [kg m^2], (3,)."""
+        across = self.mass * (3.0 * self.radius**2 + self.length**2) / 12.0
+        return np.array([across, across, 0.5 * self.mass * self.radius**2])
 
 
 @dataclass(frozen=True, kw_only=True)

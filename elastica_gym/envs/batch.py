@@ -27,7 +27,8 @@ CLOCK_PERIOD = 1.0
 # least and largest value of positions, velocities, curvatures, rolls and contact in observations
 READING_BOUNDS = ((-1.0, 1.0), (-20.0, 20.0), (-10.0, 10.0), (-1.0, 1.0), (0.0, 50.0))
 
-PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length")
+PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
+                  "body_x", "body_v", "body_Q", "body_w")  # fmt: skip
 
 
 Observations = NDArray[np.float32]

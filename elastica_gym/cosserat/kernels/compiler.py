@@ -48,6 +48,8 @@ FIRST = np.uint64(LEAD)
 # contraction into multiply-adds is all that is relaxed: reassociation would cost reproducibility
 # (and nothing is allocated, so that arrays need no reference counts: they would take half of the step)
 _COMMON: dict[str, Any] = {"_nrt": False, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+# what only kernels call needs no way in from Python, which for a Model and a State takes long to compile
+_INNER: dict[str, Any] = {**_COMMON, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 class _WideLowering(lowering.Lower):
@@ -87,8 +89,18 @@ def stage(function: Callable) -> Callable:
 
 
 def inline(function: Callable) -> Callable:
-    """Compile a function of scalars, or a driver of stages, inlined into its caller."""
+    """Compile a function of scalars, inlined into its caller."""
     return numba.njit(forceinline=True, **_COMMON)(function)
+
+
+def inner(function: Callable) -> Callable:
+    """Compile a function that only kernels call, inlined into them: a driver of stages, or scalar physics."""
+    return numba.njit(forceinline=True, **_INNER)(function)
+
+
+def apart(function: Callable) -> Callable:
+    """Compile a function that kernels call, for physics that few models have: it leaves the step's code small."""
+    return numba.njit(**_INNER)(function)
 
 
 def entry(function: Callable) -> Callable:

@@ -5,37 +5,42 @@ from math import exp
 import numpy as np
 
 from ..model import BLOCK
-from .compiler import entry, inline
+from .bodies import drift_bodies, kick_bodies, orthonormalise_bodies, weigh_bodies
+from .compiler import entry, inner
 from .curvature import bending, logarithm, relative_rotation
+from .cylinders import cylinders_on_planes, rods_on_cylinders
 from .dynamics import dynamics
 from .kinematics import kinematics, orthonormalise
 from .loads import balance, external, viscosity, wave
 from .plane import slide, slip, stick, to_nodes, touch
+from .rods import rods_on_rods
 from .strains import strains, stretch
 
 # steps between two corrections of the directors; powers of two make the test cheap
 ORTHONORMALISE_EVERY = 1024
 
 
-@inline
+@inner
 def rows(a):
     """Return the three rows of a (3, L) array, which the stages take apart."""
     return a[0], a[1], a[2]
 
 
-@inline
+@inner
 def matrix(a):
     """Return the nine rows of a (3, 3, L) array."""
     return rows(a[0]), rows(a[1]), rows(a[2])
 
 
-@inline
+@inner
 def drift(model, state, i, n, h):
     """Move environment i by a time h at its present velocities."""
     kinematics(n, h, rows(state.x[i]), rows(state.v[i]), matrix(state.Q[i]), rows(state.w[i]))
+    if model.cylinders.mass.size > 0:
+        drift_bodies(h, state.body_x[i], state.body_v[i], state.body_Q[i], state.body_w[i])
 
 
-@inline
+@inner
 def internal(model, state, control, i, n, dt):
     """Compute the forces and torques of environment i's strains, and gravity."""
     m, s, c = model, state, control
@@ -55,7 +60,7 @@ def internal(model, state, control, i, n, dt):
     balance(n, stress, before, after, m.mass, m.gravity, force, torque)
 
 
-@inline
+@inner
 def applied(model, state, control, i, n, time):
     """Add the loads on environment i that do not depend on other loads."""
     m, s, c = model, state, control
@@ -71,8 +76,22 @@ def applied(model, state, control, i, n, time):
              matrix(s.Q[i]), torque)  # fmt: skip
 
 
-@inline
-def ground(model, state, i, n):
+@inner
+def contacts(model, state, i, n):
+    """Add the loads of contact between rods and bodies in environment i, and the weight of bodies."""
+    m, s = model, state
+    if m.cylinders.mass.size > 0:
+        weigh_bodies(m.cylinders.mass, m.gravity, s.body_force[i], s.body_torque[i])
+        rods_on_cylinders(n, s.x[i], s.v[i], s.Q[i], s.w[i], s.length[i], s.radius[i], m.cylinders, s.body_x[i],
+                          s.body_v[i], s.body_Q[i], s.body_w[i], s.force[i], s.torque[i], s.body_force[i],
+                          s.body_torque[i])  # fmt: skip
+    if m.rod_contact.is_on:
+        rods_on_rods(m.rod_contact, s.order[i], s.scratch[i, 0], s.scratch[i, 1], s.x[i], s.v[i], s.Q[i], s.w[i],
+                     s.length[i], s.radius[i], s.force[i], s.torque[i])  # fmt: skip
+
+
+@inner
+def ground(model, state, i, n, dt):
     """Add the response and friction of the planes to environment i, which answer to all other loads."""
     m, s, p = model, state, model.planes
     x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
@@ -97,14 +116,20 @@ def ground(model, state, i, n):
             stick(n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
                   push, torque)  # fmt: skip
             to_nodes(n, push, force)
+    if m.cylinders.mass.size > 0:
+        cylinders_on_planes(dt, m.cylinders, p, s.body_x[i], s.body_v[i], s.body_Q[i], s.body_w[i], s.body_contact[i],
+                            s.body_force[i], s.body_torque[i])  # fmt: skip
 
 
-@inline
+@inner
 def kick(model, state, i, n, dt):
     """Change the velocities of environment i by its net loads over a time dt, and damp them."""
     m, s = model, state
     dynamics(n, dt, rows(s.force[i]), rows(s.torque[i]), s.length[i], m.inv_rest_length, m.inv_mass,
              rows(m.inv_inertia), s.decay[i], rows(s.v[i]), rows(s.w[i]))  # fmt: skip
+    if m.cylinders.mass.size > 0:
+        kick_bodies(dt, m.cylinders.mass, m.cylinders.inertia, s.body_force[i], s.body_torque[i], s.body_v[i],
+                    s.body_w[i])  # fmt: skip
 
 
 @entry
@@ -123,10 +148,12 @@ def advance(model, state, control, first, last, dt, n_substeps):
         for step in range(n_substeps):
             internal(model, state, control, i, n, dt)
             applied(model, state, control, i, n, start + (step + 0.5) * dt)
-            ground(model, state, i, n)
+            contacts(model, state, i, n)
+            ground(model, state, i, n, dt)
             kick(model, state, i, n, dt)
             drift(model, state, i, n, dt if step < n_substeps - 1 else 0.5 * dt)
             state.step[i] += 1
             if state.step[i] % ORTHONORMALISE_EVERY == 0:
                 orthonormalise(n, matrix(state.Q[i]))
+                orthonormalise_bodies(state.body_Q[i])
         state.time[i] = start + n_substeps * dt

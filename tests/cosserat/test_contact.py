@@ -1,0 +1,200 @@
+"""Rods on cylinders, on rods and on themselves: against PyElastica 1.0.0, and momentum."""
+
+import numpy as np
+import pytest
+
+from elastica_gym.cosserat import Contact, Cylinder, Rod, advance, at_rest, build_model
+from elastica_gym.cosserat.model import Array, State
+
+K, NU, MU, C = 1e3, 1e-3, 0.3, 2.0
+SMOOTH = Contact(stiffness=K, damping=NU)
+ROUGH = Contact(stiffness=K, damping=NU, friction=MU, slip_damping=C)
+# so soft that contact is all there is
+SOFT = dict(density=1000.0, youngs_modulus=1e-3, shear_modulus=1e-3)
+
+
+def straight(n: int, start: tuple, direction: tuple, **material: float) -> Rod:
+    tangent = np.asarray(direction) / np.linalg.norm(direction)
+    normal = np.cross(tangent, (0.3, 0.5, -0.8))
+    return Rod.straight(n, start=start, direction=direction, normal=normal, length=1.0, radius=0.02,
+                        **{**SOFT, **material})  # fmt: skip
+
+
+def loop(n: int = 60) -> Rod:
+    """Return a rod that crosses itself at a right angle, 0.03 m above."""
+    t = np.linspace(-1.4, 1.4, n + 1)
+    nodes = np.array([0.2 * (t**2 - 1.0), 0.015 * t, 0.2 * t * (t**2 - 1.0)])
+    return Rod.through(nodes, normal=(0.0, 1.0, 0.0), radius=np.full(n, 0.02), **SOFT)
+
+
+def object_in_the_way(rods: Contact) -> Cylinder:
+    return Cylinder(start=(-0.1, 0.0, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=0.2, radius=0.05,
+                    mass=4.0, rods=rods, ground_stiffness=1e4)  # fmt: skip
+
+
+def nodes_of(model, rod: int) -> slice:
+    start = int(model.first_slot[rod])
+    return slice(start, start + int(model.n_elements[rod]) + 1)
+
+
+def shake(model, state: State, rods, rng: np.random.Generator, size: float) -> None:
+    """Displace nodes by ``size`` [m] and give them velocities of 0.1 m/s."""
+    for number, rod in enumerate(rods):
+        where = nodes_of(model, number)
+        state.x[0][:, where] = rod.position + size * rng.standard_normal(rod.position.shape)
+        state.v[0][:, where] = 0.1 * rng.standard_normal(rod.position.shape)
+
+
+def loads(model, state, control) -> Array:
+    """Return the nodal forces of a state as it stands: a step of no time computes them."""
+    advance(model, state, control, 0, 1, 0.0, 1)
+    return state.force[0].copy()
+
+
+def contact_forces(rods, state, control, **contacts) -> Array:
+    """Return what contact adds to the nodal forces of a state."""
+    model, bare = build_model(rods, **contacts), build_model(rods)
+    other, _ = at_rest(bare, rods)
+    other.x[:], other.v[:] = state.x, state.v
+    return loads(model, state, control) - loads(bare, other, control)
+
+
+def elements(model, state, rod: int) -> tuple[Array, Array, Array, Array, Array]:
+    """Return starts, radii, lengths, tangents and nodal velocities of a rod, contiguous."""
+    where = nodes_of(model, rod)
+    x = state.x[0][:, where]
+    edge = np.diff(x, axis=1)
+    length = np.linalg.norm(edge, axis=0)
+    own = slice(where.start, where.stop - 1)
+    return (np.ascontiguousarray(x[:, :-1]), state.radius[0, own].copy(), length, edge / length,
+            np.ascontiguousarray(state.v[0][:, where]))  # fmt: skip
+
+
+def compare(ours: Array, theirs: Array) -> float:
+    return float(np.abs(ours - theirs).max() / np.abs(theirs).max())
+
+
+@pytest.fixture(scope="module")
+def oracle():
+    return pytest.importorskip("elastica._contact_functions", reason="pip install 'elastica-gym[bench]'")
+
+
+@pytest.mark.parametrize("contact", [SMOOTH, ROUGH], ids=["smooth", "rough"])
+def test_rod_on_cylinder_is_the_oracles(oracle, contact):
+    rng = np.random.default_rng(0)
+    touched = 0
+    for _ in range(1000):
+        height, across = rng.uniform(0.05, 0.069), rng.uniform(-0.03, 0.03)
+        turn = rng.uniform(0.3, 2.8)
+        direction = np.array([np.cos(turn), 0.0, np.sin(turn)])
+        rods = [straight(20, tuple(np.array([across, height, 0.0]) - 0.5 * direction), tuple(direction))]
+        body = object_in_the_way(contact)
+        model = build_model(rods, cylinders=[body])
+        state, control = at_rest(model, rods, cylinders=[body])
+        shake(model, state, rods, rng, 1e-4)
+        state.body_v[0, 0] = 0.1 * rng.standard_normal(3)
+        ours = contact_forces(rods, state, control, cylinders=[body])[:, nodes_of(model, 0)]
+        start, radius, length, tangent, velocity = elements(model, state, 0)
+        force, body_force, body_torque = np.zeros((3, 21)), np.zeros((3, 1)), np.zeros((3, 1))
+        # friction is of half a contact there, so its slip damping is half of ours
+        oracle._calculate_contact_forces_rod_cylinder(
+            start, length * tangent, body.centre, body.centre - 0.5 * body.length * body.directors[2],
+            body.length * body.directors[2], radius + body.radius, length + body.length, force, force, body_force,
+            body_torque, np.ascontiguousarray(state.body_Q[0, 0]), velocity, state.body_v[0, 0][:, None].copy(),
+            K, NU, 0.5 * contact.slip_damping, contact.friction,
+        )  # fmt: skip
+        if np.abs(force).max() > 0.0:
+            touched += 1
+            assert compare(ours, force) < 1e-11
+            assert compare(state.body_force[0, 0], body_force[:, 0]) < 1e-11
+            if contact is SMOOTH:
+                assert compare(state.body_torque[0, 0], body_torque[:, 0]) < 1e-11
+    assert touched > 900
+
+
+def end_to_end(model, state) -> list[Array]:
+    """Return the first two rods as one, with a thin element far away between them."""
+    far = (np.full((3, 1), 1e6), np.full(1, 1e-9), np.ones(1), np.eye(3)[:, :1], np.zeros((3, 0)))
+    return [np.concatenate(parts, axis=-1) for parts in zip(elements(model, state, 0), far, elements(model, state, 1),
+                                                            strict=True)]  # fmt: skip
+
+
+def test_rod_on_rod_is_the_oracles(oracle):
+    # as self contact: between rods the oracle adds the loads that press them together, contact's own among them
+    rng = np.random.default_rng(1)
+    touched = 0
+    for _ in range(1000):
+        turn = rng.uniform(0.3, 2.8)
+        direction = np.array([np.cos(turn), 0.0, np.sin(turn)])
+        rods = [straight(15, (-0.5, 0.0, 0.0), (1.0, 0.0, 0.0)),
+                straight(20, tuple(np.array([0.0, rng.uniform(0.02, 0.039), 0.0]) - 0.5 * direction), tuple(direction))]
+        model = build_model(rods, rod_contact=SMOOTH)
+        state, control = at_rest(model, rods)
+        shake(model, state, rods, rng, 1e-4)
+        ours = contact_forces(rods, state, control, rod_contact=SMOOTH)
+        theirs = np.zeros((3, 37))
+        oracle._calculate_contact_forces_self_rod(*end_to_end(model, state), theirs, K, NU)
+        if np.abs(theirs).max() > 0.0:
+            touched += 1
+            assert compare(ours[:, nodes_of(model, 0)], theirs[:, :16]) < 1e-11
+            assert compare(ours[:, nodes_of(model, 1)], theirs[:, 16:]) < 1e-11
+    assert touched > 900
+
+
+def test_self_contact_is_the_oracles(oracle):
+    rng = np.random.default_rng(2)
+    rods = [loop()]
+    model = build_model(rods, rod_contact=SMOOTH)
+    state, control = at_rest(model, rods)
+    for _ in range(1000):
+        shake(model, state, rods, rng, 5e-4)
+        ours = contact_forces(rods, state, control, rod_contact=SMOOTH)[:, nodes_of(model, 0)]
+        theirs = np.zeros((3, 61))
+        oracle._calculate_contact_forces_self_rod(*elements(model, state, 0), theirs, K, NU)
+        # their end elements weigh their nodes differently
+        assert compare(ours[:, 2:-2], theirs[:, 2:-2]) < 1e-11
+
+
+def test_momentum_of_rod_and_cylinder_is_conserved():
+    rods = [straight(20, (-0.2, 0.09, -0.4), (0.4, 0.0, 0.8), youngs_modulus=1e5, shear_modulus=4e4)]
+    body = object_in_the_way(Contact(stiffness=1e3, damping=0.5, friction=0.4, slip_damping=5.0))
+    model = build_model(rods, cylinders=[body])
+    state, control = at_rest(model, rods, cylinders=[body])
+    state.v[0][:, nodes_of(model, 0)] = np.array([[0.3], [-1.0], [0.2]])
+    mass = model.mass
+
+    def momentum() -> Array:
+        return (mass * state.v[0]).sum(axis=1) + body.mass * state.body_v[0, 0]
+
+    before = momentum()
+    advance(model, state, control, 0, 1, 5e-5, 2000)
+    assert np.linalg.norm(momentum() - before) < 1e-12 * np.linalg.norm(before)
+    # it was a push, and off centre
+    assert body.mass * np.linalg.norm(state.body_v[0, 0]) > 0.1 * np.linalg.norm(before)
+    assert np.abs(state.body_w[0, 0]).max() > 1e-3
+
+
+def test_contact_never_pulls():
+    rods = [straight(15, (-0.5, 0.0, 0.0), (1.0, 0.0, 0.0)), straight(20, (0.0, 0.039, -0.5), (0.0, 0.0, 1.0))]
+    contact = Contact(stiffness=1.0, damping=100.0)
+    model = build_model(rods, rod_contact=contact)
+    state, control = at_rest(model, rods)
+    state.v[0, 1, nodes_of(model, 1)] = 1.0
+    assert np.abs(contact_forces(rods, state, control, rod_contact=contact)).max() < 1e-12
+
+
+def test_order_of_the_sweep_does_not_matter():
+    rng = np.random.default_rng(3)
+    rods = [loop()]
+    model = build_model(rods, rod_contact=ROUGH)
+    state, control = at_rest(model, rods)
+    shake(model, state, rods, rng, 5e-4)
+    first = loads(model, state, control)
+    state.order[0] = rng.permutation(state.order[0])
+    np.testing.assert_array_equal(loads(model, state, control), first)
+
+
+def test_bodies_and_contacts_cost_no_memory_where_there_are_none():
+    model = build_model([loop()])
+    state, _ = at_rest(model, [loop()])
+    assert state.body_x.size == state.body_contact.size == state.order.size == 0
