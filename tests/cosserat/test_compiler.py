@@ -114,10 +114,11 @@ from elastica_gym.cosserat.kernels import curvature, dynamics, kinematics, plane
 row, scalar = types.Array(types.float64, 1, "C"), types.float64
 rows = types.UniTuple(row, 3)
 shape = {
-    **dict.fromkeys("x v w force torque kappa axis couple target before after stress push axial axial_material "
+    **dict.fromkeys("x v w force torque kappa lever axis couple target before after stress push axial axial_material "
                     "rest_kappa rest_sigma S J B inv_inertia".split(), rows),
     **dict.fromkeys("h dt rate k_plane nu_plane surface_tol slip_tol".split(), scalar),
-    "n": types.uint64, "Q": types.UniTuple(rows, 3), "share": types.UniTuple(row, 2), "weight": types.UniTuple(row, 2),
+    "n": types.uint64, "is_balanced": types.boolean, "Q": types.UniTuple(rows, 3),
+    "share": types.UniTuple(row, 2), "weight": types.UniTuple(row, 2),
 }
 for stage in (kinematics.kinematics, strains.stretch, strains.strains, curvature.relative_rotation, curvature.logarithm,
               curvature.bending, plane.touch, plane.slip, plane.slide, plane.stick, dynamics.dynamics):
