@@ -42,8 +42,8 @@ class Task:
         Returns the `Body`; called with the environment's ``body_kwargs``.
     duration : float
         Simulated time of an episode [s].
-    draw_start : callable
-        Writes a new start into an environment; see `elastica_gym.envs.starts.draw_start`.
+    starts : dict of str to callable
+        By name of the ``spread``, what writes a new start into an environment; see `elastica_gym.envs.starts`.
     goal_size : int
         How many numbers G a goal is.
     draw_goal : callable
@@ -73,7 +73,7 @@ class Task:
     name: str
     make_body: Callable[..., Body]
     duration: float
-    draw_start: Callable[[np.random.Generator, Body, State, State, int], None]
+    starts: dict[str, Callable[[np.random.Generator, Body, State, int], None]]
     goal_size: int
     draw_goal: Callable[[np.random.Generator, Situation], Array]
     goal_names: tuple[str, ...]
@@ -92,6 +92,13 @@ def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, A
     """Return the forward and right component of horizontal vectors (x, z), in the frame of the heading, (B,) each."""
     hx, hz = situation.pose.heading[:, 0], situation.pose.heading[:, 1]
     return x * hx + z * hz, z * hx - x * hz
+
+
+def way_to_goal(situation: Situation) -> tuple[Array, Array]:
+    """Return the way from the head to the place that a goal begins with, forward and right, in body lengths."""
+    s, length = situation, situation.body.senses.length
+    x, z = (s.goal[:, 0] - s.pose.head[:, 0]) / length, (s.goal[:, 1] - s.pose.head[:, 2]) / length
+    return in_heading_frame(s, x, z)
 
 
 def effort(situation: Situation) -> Array:
