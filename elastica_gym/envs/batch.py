@@ -28,7 +28,7 @@ CLOCK_PERIOD = 1.0
 READING_BOUNDS = ((-1.0, 1.0), (-20.0, 20.0), (-10.0, 10.0), (-1.0, 1.0), (0.0, 50.0))
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
-                  "body_x", "body_v", "body_Q", "body_w")  # fmt: skip
+                  "body_x", "body_v", "body_Q", "body_w", "body_contact")  # fmt: skip
 
 
 Observations = NDArray[np.float32]
