@@ -122,9 +122,9 @@ def measure_physics(n: int, n_pairs: int) -> dict[str, Any]:
 
     dt, loads = TIME_STEP * 50 / n, {"gravity": GRAVITY, "planes": [ground()], "waves": [WAVE]}
     agreement = require_agreement(n, dt, loads)
-    model, state, control, twin = oracle.both(snake(n, damping_rate=DAMPING), dt, **loads)
+    model, state, control, twin = oracle.both([snake(n, damping_rate=DAMPING)], dt, **loads)
     advance(model, state, control, 0, 1, dt, round(WARM_UP / dt))
-    twin.set_state(*motion(model, state), float(state.time[0]))
+    twin.set_state([motion(model, state)], float(state.time[0]))
     twin.advance(STEPS_THEIRS)
     ours, theirs = [], []
     for _ in range(n_pairs):
@@ -150,10 +150,10 @@ def require_agreement(n: int, dt: float, loads: dict[str, Any]) -> dict[str, flo
     from tests.cosserat.scenes import LENGTH, snake
 
     rod = snake(n, damping_rate=DAMPING)
-    model, state, control, twin = oracle.both(rod, dt, **loads)
+    model, state, control, twin = oracle.both([rod], dt, **loads)
     advance(model, state, control, 0, 1, dt, 100)
     twin.advance(100)
-    distance, step = oracle.distance(model, state, twin), oracle.worst_step(rod, dt, 50, **loads)
+    distance, step = oracle.distance(model, state, twin), oracle.worst_step([rod], dt, 50, **loads)[0]
     # PyElastica adds 1e-14 m to the length of an element, which the strains of short ones show (docs/differences.md)
     allowed = 1e-11 + 2e-14 * n / LENGTH
     if not (distance < 1e-9 and step < allowed):

@@ -26,7 +26,7 @@ CONTROL_DT = 0.05
 CLOCK_PERIOD = 1.0
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
-                  "body_x", "body_v", "body_Q", "body_w")  # fmt: skip
+                  "body_x", "body_v", "body_Q", "body_w", "body_contact")  # fmt: skip
 
 
 Observations = NDArray[np.float32]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from elastica_gym.cosserat import Plane, Rod, State, Wave
+from elastica_gym.cosserat import Cylinder, Plane, Rod, State, Wave
 from elastica_gym.cosserat.model import Array, Model
 
 LENGTH = 0.35
@@ -47,6 +47,15 @@ def kinked(n: int = 40, **material: object) -> Rod:
     return Rod.through(nodes, normal=(1.0, 0.0, 0.0), radius=radius, **{**given, **material})
 
 
+def loop(n: int, *, size: float, gap: float, radius: float, **material: float) -> Rod:
+    """Return a rod at rest as a loop of this size, whose ends pass each other with their axes ``gap`` apart."""
+    t = np.linspace(-1.4, 1.4, 1001)
+    curve = np.array([size * (t**2 - 1.0), 0.5 * gap * t, size * t * (t**2 - 1.0)])
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve), axis=0))])
+    nodes = np.array([np.interp(np.linspace(0.0, s[-1], n + 1), s, row) for row in curve])
+    return Rod.through(nodes, normal=(0.0, 1.0, 0.0), radius=np.full(n, radius), **material)
+
+
 def motion(model: Model, state: State, env: int = 0, rod: int = 0) -> tuple[Array, Array, Array, Array]:
     """Return views of a rod's positions, velocities, directors and angular velocities."""
     start, n = int(model.first_slot[rod]), int(model.n_elements[rod])
@@ -54,14 +63,24 @@ def motion(model: Model, state: State, env: int = 0, rod: int = 0) -> tuple[Arra
     return state.x[env][:, nodes], state.v[env][:, nodes], state.Q[env][:, :, elements], state.w[env][:, elements]
 
 
-def disturb(rod: Rod, model: Model, state: State, rng: np.random.Generator, speed: float = 1.0) -> None:
+def disturb(
+    rod: Rod, model: Model, state: State, rng: np.random.Generator, speed: float = 1.0, number: int = 0
+) -> None:
     """Shake a rod in place: nodes by 3 % of an element, directors by 0.05 rad, velocities by 0.1 m/s and 5 rad/s."""
-    x, v, Q, w = motion(model, state)
+    x, v, Q, w = motion(model, state, rod=number)
     n = rod.n_elements
     x[:] = rod.position + 0.03 * rod.rest_length.mean() * rng.standard_normal((3, n + 1))
     v[:] = speed * 0.1 * rng.standard_normal((3, n + 1))
     w[:] = speed * 5.0 * rng.standard_normal((3, n))
     Q[:] = np.einsum("kij,jlk->ilk", rotations(0.05 * rng.standard_normal((n, 3))), rod.directors)
+
+
+def disturb_body(cylinder: Cylinder, state: State, rng: np.random.Generator, number: int = 0) -> None:
+    """Shake a cylinder in place: by 1 mm, 0.05 rad, 0.1 m/s and 0.2 rad/s."""
+    state.body_x[0, number] = cylinder.centre + 1e-3 * rng.standard_normal(3)
+    state.body_v[0, number] = 0.1 * rng.standard_normal(3)
+    state.body_w[0, number] = 0.2 * rng.standard_normal(3)
+    state.body_Q[0, number] = rotations(0.05 * rng.standard_normal((1, 3)))[0] @ cylinder.directors
 
 
 def rotations(vectors: Array) -> Array:

@@ -6,6 +6,8 @@ import pytest
 from elastica_gym.cosserat import Contact, Cylinder, Rod, advance, at_rest, build_model
 from elastica_gym.cosserat.model import Array, State
 
+from .scenes import loop
+
 K, NU, MU, C = 1e3, 1e-3, 0.3, 2.0
 SMOOTH = Contact(stiffness=K, damping=NU)
 ROUGH = Contact(stiffness=K, damping=NU, friction=MU, slip_damping=C)
@@ -20,11 +22,9 @@ def straight(n: int, start: tuple, direction: tuple, **material: float) -> Rod:
                         **{**SOFT, **material})  # fmt: skip
 
 
-def loop(n: int = 60) -> Rod:
+def knot() -> Rod:
     """Return a rod that crosses itself at a right angle, 0.03 m above."""
-    t = np.linspace(-1.4, 1.4, n + 1)
-    nodes = np.array([0.2 * (t**2 - 1.0), 0.015 * t, 0.2 * t * (t**2 - 1.0)])
-    return Rod.through(nodes, normal=(0.0, 1.0, 0.0), radius=np.full(n, 0.02), **SOFT)
+    return loop(60, size=0.2, gap=0.03, radius=0.02, **SOFT)
 
 
 def object_in_the_way(rods: Contact) -> Cylinder:
@@ -143,7 +143,7 @@ def test_rod_on_rod_is_the_oracles(oracle):
 
 def test_self_contact_is_the_oracles(oracle):
     rng = np.random.default_rng(2)
-    rods = [loop()]
+    rods = [knot()]
     model = build_model(rods, rod_contact=SMOOTH)
     state, control = at_rest(model, rods)
     for _ in range(1000):
@@ -185,7 +185,7 @@ def test_contact_never_pulls():
 
 def test_order_of_the_sweep_does_not_matter():
     rng = np.random.default_rng(3)
-    rods = [loop()]
+    rods = [knot()]
     model = build_model(rods, rod_contact=ROUGH)
     state, control = at_rest(model, rods)
     shake(model, state, rods, rng, 5e-4)
@@ -195,6 +195,6 @@ def test_order_of_the_sweep_does_not_matter():
 
 
 def test_bodies_and_contacts_cost_no_memory_where_there_are_none():
-    model = build_model([loop()])
-    state, _ = at_rest(model, [loop()])
+    model = build_model([knot()])
+    state, _ = at_rest(model, [knot()])
     assert state.body_x.size == state.body_contact.size == state.order.size == 0
