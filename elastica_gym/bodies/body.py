@@ -29,6 +29,8 @@ class Senses(NamedTuple):
     """First and last node of the part that the heading points from, (2,) int64"""
     head: int
     """The node that reaches for targets"""
+    crown: int
+    """The element whose normal points up while the animal is upright"""
     length: float
     """Body length, the unit of lengths [m]"""
     curvature_scale: float
@@ -115,6 +117,8 @@ class Pose(NamedTuple):
     """Horizontal unit vector from the rear to the front part, as (x, z), (B, 2)"""
     head: Array
     """Position of the head [m], (B, 3)"""
+    upright: Array
+    """Up component of the crown's normal, (B,)"""
     objects: Array
     """Centres of mass of the free objects [m], (B, C, 3)"""
     gaps: Array
@@ -131,7 +135,7 @@ def make_pose(n_envs: int, n_objects: int) -> Pose:
     """Allocate a Pose."""
     return Pose(
         centre=np.zeros((n_envs, 3)), velocity=np.zeros((n_envs, 3)), heading=np.zeros((n_envs, 2)),
-        head=np.zeros((n_envs, 3)), objects=np.zeros((n_envs, n_objects, 3)), gaps=np.zeros((n_envs, n_objects)),
+        head=np.zeros((n_envs, 3)), upright=np.zeros(n_envs), objects=np.zeros((n_envs, n_objects, 3)), gaps=np.zeros((n_envs, n_objects)),
         sound=np.ones(n_envs, dtype=np.int64),
     )  # fmt: skip
 
@@ -224,6 +228,7 @@ def feel(model, state, senses, pose, readings):
             pose.centre[i, c] /= total
             pose.velocity[i, c] /= total
             pose.head[i, c] = x[c, senses.head]
+        pose.upright[i] = state.Q[i, 0, 1, senses.crown]
         pose.sound[i] = 1 if sound else 0
 
         hx = _mean(x[0], senses.front) - _mean(x[0], senses.rear)

@@ -124,5 +124,5 @@ def _senses(start: int, weight: float) -> Senses:
         joints=start + np.concatenate([arm_joints, last - 2 - arm_joints[::-1]]),
         skin=start + np.concatenate([skin, last - skin[::-1]]),
         front=np.array([start + MIDDLE + 1, start + HEAD[1]]), rear=np.array([start + HEAD[0], start + MIDDLE - 1]),
-        head=start + MIDDLE, length=LENGTH, curvature_scale=10.0, weight=weight, fastest=50.0,
+        head=start + MIDDLE, crown=start + MIDDLE, length=LENGTH, curvature_scale=10.0, weight=weight, fastest=50.0,
     )  # fmt: skip

@@ -196,9 +196,11 @@ class BatchEnv(VectorEnv):
         self._advance()
         sound = self.pose.sound == 1
         rewards, info = self._judge(sound)
-        terminated = ~sound | (info["is_success"] & self.task.ends_on_success)
+        ends = {name: failed(self.situation()) for name, failed in self.task.failures.items()}
+        ends |= {"success": info["is_success"] & self.task.ends_on_success, "diverged": ~sound}
+        terminated = np.any(list(ends.values()), axis=0)
         truncated = ~terminated & (self.elapsed >= self.max_episode_steps)
-        info["termination_reason"] = _reasons(sound, terminated, truncated)
+        info["termination_reason"] = _reasons({"time_limit": truncated, **ends})
         self._observe(sound)
         if begin.any():
             self._start(begin)
@@ -456,9 +458,9 @@ def _checked_seeds(seeds: Sequence[int | None], num_envs: int) -> list[int | Non
     return [None if each is None else int(each) for each in seeds]
 
 
-def _reasons(sound: Mask, terminated: Mask, truncated: Mask) -> NDArray[np.object_]:
-    reasons = np.full(sound.shape, "", dtype=object)
-    reasons[truncated] = "time_limit"
-    reasons[terminated] = "success"
-    reasons[~sound] = "diverged"
+def _reasons(ends: dict[str, Mask]) -> NDArray[np.object_]:
+    """Return why each episode ends, or an empty text; of several reasons the last."""
+    reasons = np.full(ends["diverged"].shape, "", dtype=object)
+    for name, ended in ends.items():
+        reasons[ended] = name
     return reasons

@@ -52,10 +52,11 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 |---|---|---|
 | forward | 10 | way of the centre of mass along the commanded direction, in body lengths |
 | effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
+| toppled | -10 | 1 where the head has rolled or pitched by more than 60 degrees |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
 The info also has ``distance``, the way so far [m]; ``is_success``, whether that is half a body length or
-more; and ``termination_reason``: empty, ``time_limit`` or ``diverged``.
+more; and ``termination_reason``: empty, ``time_limit``, ``toppled`` or ``diverged``.
 
 Starting state
 --------------
@@ -67,7 +68,8 @@ uniform within 90 degrees of straight away from the object. Muscles are at rest.
 
 Episode end
 -----------
-Truncated after 10 s, which are 200 control steps. Terminated if numbers stop being finite, a node is faster
+Truncated after 10 s, which are 200 control steps. Terminated if the head rolls or pitches by more than 60
+degrees, since a ball rolls further than it crawls, and if numbers stop being finite, a node is faster
 than 10 m/s or the object is; the last sound observation is returned.
 
 Arguments
@@ -88,7 +90,7 @@ from ..bodies import octopus
 from ..cosserat.model import Array
 from .gaits import octopus_crawl
 from .starts import with_object_anywhere
-from .task import Mask, Situation, Task, effort, in_heading_frame, way_to_goal
+from .task import Mask, Situation, Task, effort, has_toppled, in_heading_frame, toppled, way_to_goal
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -151,11 +153,12 @@ TASK = Task(
     goal_names=("goal/forward", "goal/right", "home/forward", "home/right"),
     goal_bounds=((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0)),
     see_goal=see_goal,
-    reward_terms={"forward": forward, "effort": effort},
-    reward_weights={"forward": 10.0, "effort": 0.1, "diverged": -10.0},
+    reward_terms={"forward": forward, "effort": effort, "toppled": toppled},
+    reward_weights={"forward": 10.0, "effort": 0.1, "toppled": -10.0, "diverged": -10.0},
     distance=distance,
     succeeds=succeeds,
     ends_on_success=False,
+    failures={"toppled": has_toppled},
     target=no_target,
     scripted_policy=scripted_policy,
 )

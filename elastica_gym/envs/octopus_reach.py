@@ -54,11 +54,12 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | success | 10 | 1 where they touch |
 | early | 10 | at success, the part of the episode that is left |
 | effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
+| toppled | -10 | 1 where the head has rolled or pitched by more than 60 degrees |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
 Approaches add up to what the gap has shrunk in all, so hovering earns nothing. The info also has ``distance``,
 by how much it has shrunk since reset [m]; ``is_success``; and ``termination_reason``: empty, ``success``,
-``time_limit`` or ``diverged``.
+``time_limit``, ``toppled`` or ``diverged``.
 
 Starting state
 --------------
@@ -70,7 +71,7 @@ bearing (``spread="anywhere"``), drawn again where it would stand in the animal.
 
 Episode end
 -----------
-Terminated at success, and if numbers stop being finite, a node is faster than 10 m/s or the object is; then the
+Terminated at success, if the head rolls or pitches by more than 60 degrees, and if numbers stop being finite, a node is faster than 10 m/s or the object is; then the
 last sound observation is returned. Truncated after 10 s, which are 200 control steps.
 
 Arguments
@@ -91,7 +92,7 @@ from ..bodies import octopus
 from ..cosserat.model import Array
 from .gaits import octopus_reach
 from .starts import with_object_anywhere, with_object_on_the_arc
-from .task import Mask, Situation, Task, effort, in_heading_frame, way_to_goal
+from .task import Mask, Situation, Task, effort, has_toppled, in_heading_frame, toppled, way_to_goal
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -158,11 +159,12 @@ TASK = Task(
     goal_names=("goal/forward", "goal/right", "home/forward", "home/right"),
     goal_bounds=((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0)),
     see_goal=see_goal,
-    reward_terms={"approach": approach, "success": success, "early": early, "effort": effort},
-    reward_weights={"approach": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "diverged": -10.0},
+    reward_terms={"approach": approach, "success": success, "early": early, "effort": effort, "toppled": toppled},
+    reward_weights={"approach": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "toppled": -10.0, "diverged": -10.0},
     distance=distance,
     succeeds=succeeds,
     ends_on_success=True,
+    failures={"toppled": has_toppled},
     target=no_target,
     scripted_policy=scripted_policy,
 )
