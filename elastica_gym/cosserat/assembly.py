@@ -170,7 +170,7 @@ def _rod_contact(contact: Contact | None, rods: Sequence[Rod], first: np.ndarray
     return RodContact(
         is_on=contact is not None, stiffness=float(law.stiffness), damping=float(law.damping),
         friction=float(law.friction), slip_damping=float(law.slip_damping), last_other=last_other,
-        last_clear=last_clear,
+        last_clear=last_clear, stray=0.2 * min(float(rod.radius.min()) for rod in rods),
     )  # fmt: skip
 
 

@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 BLOCK = 8
 LEAD = BLOCK
 SCRATCH = 16
+# pairs of elements that may touch, for each element, for which there is room
+ROOM = 32
 # of half a turn of a rod about its own surface: elements that are nearer than that cannot touch
 NEAR = 0.8
 
@@ -102,6 +104,8 @@ class RodContact(NamedTuple):
     """Coefficient of Coulomb friction mu"""
     slip_damping: float
     """Force of friction per slip below the Coulomb bound c [N s/m]"""
+    stray: float
+    """How far an element may move before pairs that may touch are listed anew [m]"""
     last_other: Array
     """The last slot before the rod that a slot belongs to, a whole number, (L,)"""
     last_clear: Array
@@ -214,6 +218,14 @@ class State(NamedTuple):
     """Normal force between an element and cylinders, where there are any [N], (B, L)"""
     rod_touch: Array
     """Normal force between an element and others, where rods touch [N], (B, L)"""
+    n_pairs: Index
+    """How many pairs of elements may touch until one has strayed too far, -1 if they are not listed, (B,) int64"""
+    pairs: Index
+    """Those pairs, the lower slot times L plus the higher one, sorted, (B, P) int64"""
+    listed_x: Array
+    """Node positions when they were listed [m], (B, 3, L)"""
+    listed_reach: Array
+    """Radii of the balls about elements when they were listed [m], (B, L)"""
     order: Index
     """Slots of the E elements that may touch others, in the order of a sweep: any order will do, the
     right one is the fastest; (B, E) int64"""
@@ -260,12 +272,15 @@ def make_state(model: Model, n_envs: int = 1) -> State:
     shapes |= {name: (n_envs, n_bodies, 3) for name in State._fields if name.startswith("body_")}
     shapes |= {"body_Q": (n_envs, n_bodies, 3, 3), "body_contact": (n_envs, n_bodies, 6, 7), "body_touch": scalar}
     elements = _elements(model) if model.rod_contact.is_on else np.zeros(0, dtype=np.int64)
-    shapes |= {"step": (n_envs,), "order": (n_envs, elements.size)}
-    state = State(*(aligned_zeros(shapes.get(name, vector), np.int64 if name in ("step", "order") else np.float64)
+    room = min(elements.size * (elements.size - 1) // 2, ROOM * elements.size)
+    shapes |= {"step": (n_envs,), "order": (n_envs, elements.size), "n_pairs": (n_envs,), "pairs": (n_envs, room),
+               "listed_reach": scalar}  # fmt: skip
+    whole = ("step", "order", "n_pairs", "pairs")
+    state = State(*(aligned_zeros(shapes.get(name, vector), np.int64 if name in whole else np.float64)
                     for name in State._fields))
     for i in range(3):
         state.Q[:, i, i] = state.body_Q[:, :, i, i] = 1.0
-    state.order[:] = elements
+    state.order[:], state.n_pairs[:] = elements, -1
     _assert_disjoint(state)
     return state
 

@@ -6,8 +6,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from elastica_gym.cosserat import Contact, Cylinder, Plane, Rod, advance, at_rest, build_model
-from elastica_gym.cosserat.kernels.rods import rods_on_rods
-from elastica_gym.cosserat.model import Array, Model, State
+from elastica_gym.cosserat.kernels.rods import list_pairs
+from elastica_gym.cosserat.model import Array, Model, State, aligned_zeros
 
 from .scenes import disturb, disturb_body, loop, motion, rotations
 
@@ -200,20 +200,51 @@ def coil(n: int) -> Rod:
 
 
 @numba.njit
-def count(n, model, state):
+def listed_and_met(contact, state):
     s = state
-    scratch = s.scratch[0]
-    return rods_on_rods(n, model.rod_contact, s.order[0], scratch[0], scratch[1], scratch[2], s.x[0], s.v[0], s.Q[0],
-                        s.w[0], s.length[0], s.radius[0], s.force[0], s.torque[0], s.rod_touch[0])  # fmt: skip
+    begin, end, reach = s.scratch[0, 0], s.scratch[0, 1], s.listed_reach[0]
+    return list_pairs(contact, s.order[0], begin, end, s.x[0], reach, 2.0 * contact.stray, s.pairs[0])
 
 
 def test_pairs_of_the_broad_phase_grow_with_the_rod():
-    pairs = []
+    counts = []
     for n in (200, 400, 800):
         rod = coil(n)
         model = build_model([rod], rod_contact=Contact(stiffness=1.0))
         state, control = at_rest(model, [rod])
         advance(model, state, control, 0, 1, 0.0, 1)
-        pairs.append(count(np.uint64(model.first_slot[0] + n), model, state))
-    assert pairs[2] - pairs[1] < 2.2 * (pairs[1] - pairs[0])
-    assert pairs[2] < 0.15 * 800 * 799 / 2
+        counts.append(listed_and_met(model.rod_contact, state))
+    for short, middling, long in zip(*counts, strict=True):
+        assert 0 < long - middling < 2.2 * (middling - short)
+        assert long < 0.15 * 800 * 799 / 2
+
+
+def test_listing_anew_changes_nothing():
+    """A list that is old and one that is new hold different pairs, and give the same bits."""
+    rod = coil(80)
+    model = build_model([rod], rod_contact=Contact(stiffness=50.0, friction=0.3, slip_damping=1e-3), gravity=(0, 0, -1.0))
+    ends = []
+    for lists_anew in (False, True):
+        state, control = at_rest(model, [rod])
+        state.v[0, 2] = np.linspace(1.0, -1.0, state.v.shape[2])
+        for _ in range(100):
+            if lists_anew:
+                state.n_pairs[:] = -1
+            advance(model, state, control, 0, 1, 1e-5, 20)
+        assert state.rod_touch.max() > 0.0
+        ends.append([field.copy() for field in (state.x, state.v, state.Q, state.w)])
+    for old, new in zip(*ends, strict=True):
+        np.testing.assert_array_equal(old, new)
+
+
+def test_more_pairs_than_there_is_room_for():
+    rod = coil(80)
+    model = build_model([rod], rod_contact=Contact(stiffness=50.0))
+    state, control = at_rest(model, [rod])
+    cramped = state._replace(pairs=aligned_zeros((1, 4), np.int64), **{
+        name: getattr(state, name).copy() for name in State._fields if name != "pairs"})  # fmt: skip
+    for each in (state, cramped):
+        each.v[0, 2] = np.linspace(1.0, -1.0, state.v.shape[2])
+        advance(model, each, control, 0, 1, 1e-5, 2000)
+    assert cramped.n_pairs[0] > 4 and state.rod_touch.max() > 0.0
+    np.testing.assert_array_equal(state.x, cramped.x)

@@ -88,10 +88,12 @@ def contacts(model, state, i, n):
         rods_on_cylinders(n, s.scratch[i, 0], x, v, Q, w, length, radius, m.cylinders, bodies, s.force[i],
                           s.torque[i], s.body_touch[i])  # fmt: skip
     if m.rod_contact.is_on:
-        begin, end, last_far = s.scratch[i, 0], s.scratch[i, 1], s.scratch[i, 2]
+        begin, end, reach, last_far = s.scratch[i, 0], s.scratch[i, 1], s.scratch[i, 2], s.scratch[i, 3]
         s.rod_touch[i, :] = 0.0
-        rods_on_rods(n, m.rod_contact, s.order[i], begin, end, last_far, x, v, Q, w, length, radius, s.force[i],
-                     s.torque[i], s.rod_touch[i])  # fmt: skip
+        s.n_pairs[i] = rods_on_rods(
+            n, m.rod_contact, s.order[i], s.pairs[i], s.n_pairs[i], rows(s.listed_x[i]), s.listed_reach[i], begin, end,
+            reach, last_far, x, v, Q, w, length, radius, s.force[i], s.torque[i], s.rod_touch[i],
+        )  # fmt: skip
 
 
 @inner
