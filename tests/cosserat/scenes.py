@@ -88,3 +88,9 @@ def rotations(vectors: Array) -> Array:
     from scipy.spatial.transform import Rotation
 
     return Rotation.from_rotvec(vectors).as_matrix()
+
+
+def without_contact(model: Model) -> Model:
+    """Return a model whose rods touch neither cylinders nor each other."""
+    none = type(model.cylinders)(*(column[:0] for column in model.cylinders))
+    return model._replace(cylinders=none, rod_contact=model.rod_contact._replace(is_on=False))

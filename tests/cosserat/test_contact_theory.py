@@ -9,7 +9,7 @@ from elastica_gym.cosserat import Contact, Cylinder, Plane, Rod, advance, at_res
 from elastica_gym.cosserat.kernels.rods import list_pairs
 from elastica_gym.cosserat.model import Array, Model, State, aligned_zeros
 
-from .scenes import disturb, disturb_body, loop, motion, rotations
+from .scenes import disturb, disturb_body, loop, motion, rotations, without_contact
 
 # so soft that contact is all there is
 SOFT = dict(density=1000.0, youngs_modulus=1e-3, shear_modulus=1e-3)
@@ -47,9 +47,7 @@ def contact_loads(model: Model, state: State, control) -> tuple[Array, Array, fl
 
     A step of no time computes loads; those without contact, which are small, are taken off.
     """
-    bare = model._replace(cylinders=type(model.cylinders)(*(a[:0] for a in model.cylinders)),
-                          rod_contact=model.rod_contact._replace(is_on=False))  # fmt: skip
-    advance(bare, state, control, 0, 1, 0.0, 1)
+    advance(without_contact(model), state, control, 0, 1, 0.0, 1)
     internal, internal_torque = state.force[0].copy(), state.torque[0].copy()
     advance(model, state, control, 0, 1, 0.0, 1)
     force, torque = state.force[0] - internal, state.torque[0] - internal_torque
