@@ -110,6 +110,10 @@ class Twin:
                     ea.CylinderPlaneContact, k=cylinder.ground_stiffness, nu=cylinder.ground_damping
                 )
 
+    def hold(self, rod: int, couple: Array, bend_stiffness: Array) -> None:
+        """Hold a muscle couple at Voronoi points [N m], (3, n - 1), as the shift of curvature at rest that it is."""
+        self.rods[rod].rest_kappa[:] -= couple / bend_stiffness
+
     def advance(self, n_steps: int) -> None:
         """Take steps of position Verlet."""
         step, simulator, dt, time = self._stepper.step, self._simulator, self.dt, self.time
@@ -274,10 +278,17 @@ def _rod(rod: Rod) -> ea.CosseratRod:
     )  # fmt: skip
 
 
-def both(rods: Sequence[Rod], dt: float, **loads: Any) -> tuple[Model, State, Control, Twin]:
-    """Return a scene of ours, at rest, and its twin."""
-    model = build_model(rods, **loads)
-    return model, *at_rest(model, rods, cylinders=loads.get("cylinders", ())), Twin(rods, dt=dt, **loads)
+def both(
+    rods: Sequence[Rod], dt: float, *, couple: Array | None = None, corrected: bool = True, **loads: Any
+) -> tuple[Model, State, Control, Twin]:
+    """Return a scene of ours, at rest, and its twin; the first rod's muscles hold ``couple`` [N m], (3, n - 1)."""
+    model, twin = build_model(rods, **loads), Twin(rods, dt=dt, corrected=corrected, **loads)
+    state, control = at_rest(model, rods, cylinders=loads.get("cylinders", ()))
+    if couple is not None:
+        first = int(model.first_slot[0])
+        control.couple[0, :, first : first + couple.shape[1]] = couple
+        twin.hold(0, couple, rods[0].bend_stiffness)
+    return model, state, control, twin
 
 
 def motions(model: Model, state: State) -> list[tuple[Array, Array, Array, Array]]:
@@ -293,13 +304,15 @@ def distance(model: Model, state: State, twin: Twin) -> float:
                for ours, theirs in zip(motions(model, state), twin.motions, strict=True))  # fmt: skip
 
 
-def worst_step(rods: Sequence[Rod], dt: float, n_states: int, **loads: Any) -> tuple[float, int]:
+def worst_step(
+    rods: Sequence[Rod], dt: float, n_states: int, *, couple: Array | None = None, **loads: Any
+) -> tuple[float, int]:
     """Return how much one step from random states differs, and in how many of them rods or bodies touched.
 
     For v and w relative to their largest change, or to a tenth of the largest in all states where there is
     hardly any; for x and Q absolute; the largest of all.
     """
-    model, state, control, twin = both(rods, dt, **loads)
+    model, state, control, twin = both(rods, dt, couple=couple, **loads)
     rng = np.random.default_rng(0)
     differences, changes, n_touching = [], [], 0
     for number in range(n_states):

@@ -16,7 +16,7 @@ POINTS = 6
 # most passes over the points of contact, each of which sees what the others have changed
 SWEEPS = 30
 # change of friction in a pass, relative to its bound, below which it is found
-SETTLED = 1e-7
+SETTLED = 1e-5
 
 
 @stage
