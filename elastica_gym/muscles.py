@@ -69,6 +69,8 @@ OCTOPUS = Muscles(
     arms=((50.0 / 120.0, 0.0), (70.0 / 120.0, 1.0)),
     activation_time=0.06,
 )
+"""The octopus's: its arms begin at the head. The widths of the 2020 hackathon, and 0.52 of its couples: then all of
+one direction of bending curl an arm by 1.2 turns. More would close its bends so far that their inside vanishes."""
 
 
 def basis(s: Array, widths: tuple[float, float, float]) -> Array:

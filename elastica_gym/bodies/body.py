@@ -128,15 +128,15 @@ class Pose(NamedTuple):
 
     def only(self, envs: slice) -> "Pose":
         """Return views of some environments."""
-        return Pose(*(field[envs] for field in self))
+        return Pose._make(field[envs] for field in self)
 
 
 def make_pose(n_envs: int, n_objects: int) -> Pose:
     """Allocate a Pose."""
     return Pose(
         centre=np.zeros((n_envs, 3)), velocity=np.zeros((n_envs, 3)), heading=np.zeros((n_envs, 2)),
-        head=np.zeros((n_envs, 3)), upright=np.zeros(n_envs), objects=np.zeros((n_envs, n_objects, 3)), gaps=np.zeros((n_envs, n_objects)),
-        sound=np.ones(n_envs, dtype=np.int64),
+        head=np.zeros((n_envs, 3)), upright=np.zeros(n_envs), objects=np.zeros((n_envs, n_objects, 3)),
+        gaps=np.zeros((n_envs, n_objects)), sound=np.ones(n_envs, dtype=np.int64),
     )  # fmt: skip
 
 

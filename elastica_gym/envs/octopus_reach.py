@@ -27,22 +27,22 @@ with y up. At rest the arms point half to the left.
 
 | index | meaning | unit | range |
 |---|---|---|---|
-| 0-32 | position of 11 nodes, from the first arm's tip over the head to the second's, from the centre of mass: forward, up, right | body length | -1 to 1 |
+| 0-32 | position of 11 nodes, tip to tip, from the centre of mass: forward, up, right | body length | -1 to 1 |
 | 33-65 | their velocity: forward, up, right of each | body lengths/s | -20 to 20 |
 | 66-101 | curvature about the normal and binormal, and twist, at 12 places, from tip to tip | 10/m | -10 to 10 |
 | 102-125 | up component of normal and binormal there: how the body has rolled | 1 | -1 to 1 |
-| 126-138 | force with which the ground carries each of 13 parts: six of an arm, head, six of the other | a 13th of the weight | 0 to 50 |
-| 139-151 | force with which the object touches each of them | a 13th of the weight | 0 to 50 |
-| 152-154 | the object's centre, from the head: forward, up, right | body length | -4 to 4 |
-| 155-157 | its axis, from foot to top at the start: forward, up, right | 1 | -1 to 1 |
-| 158-160 | its velocity: forward, up, right | body lengths/s | -20 to 20 |
-| 161-163 | its angular velocity: about forward, up, right | rad/s | -50 to 50 |
-| 164 | gap between its surface and the animal's | body length | -1 to 4 |
-| 165-206 | activation that each muscle has reached, in the order of the actions | 1 | -1 to 1 |
-| 207-208 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
-| 209 | part of the episode that is left | 1 | 0 to 1 |
-| 210-211 | direction from the head to the object: forward and right component of a unit vector | 1 | -1 to 1 |
-| 212-213 | way from the head to where it was at the start, its home: forward and right | body length | -4 to 4 |
+| 126-136 | force with which the ground carries each of 11 parts, tip to tip | an 11th of the weight | 0 to 50 |
+| 137-147 | force with which the object touches each of them | an 11th of the weight | 0 to 50 |
+| 148-150 | the object's centre, from the head: forward, up, right | body length | -4 to 4 |
+| 151-153 | its axis, from foot to top at the start: forward, up, right | 1 | -1 to 1 |
+| 154-156 | its velocity: forward, up, right | body lengths/s | -20 to 20 |
+| 157-159 | its angular velocity: about forward, up, right | rad/s | -50 to 50 |
+| 160 | gap between its surface and the animal's | body length | -1 to 4 |
+| 161-202 | activation that each muscle has reached, in the order of the actions | 1 | -1 to 1 |
+| 203-204 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
+| 205 | part of the episode that is left | 1 | 0 to 1 |
+| 206-207 | direction from the head to the object: forward and right component of a unit vector | 1 | -1 to 1 |
+| 208-209 | way from the head to where it was at the start, its home: forward and right | body length | -4 to 4 |
 
 Rewards
 -------
@@ -64,15 +64,16 @@ by how much it has shrunk since reset [m]; ``is_success``; and ``termination_rea
 Starting state
 --------------
 All is drawn from the environment's own generator: the heading, uniform; the shape, the resting one bent
-sideways by three sine waves of couple, whose curvature at the tips has normal amplitudes of 0.7, 0.35 and
-0.175 1/m; a horizontal velocity with a standard deviation of 0.02 m/s; and the object, upright, at 0.4 m from the
+sideways by three sine waves of couple, whose curvature at the tips has normal amplitudes of 0.7, 0.35 and 0.175
+1/m; a horizontal velocity with a standard deviation of 0.02 m/s; and the object, upright, at 0.4 m from the
 head, its bearing uniform from straight ahead to straight to the right (``spread="arc"``), or at 0.4 to 0.8 m and any
 bearing (``spread="anywhere"``), drawn again where it would stand in the animal. Muscles are at rest.
 
 Episode end
 -----------
-Terminated at success, if the head rolls or pitches by more than 60 degrees, and if numbers stop being finite, a node is faster than 10 m/s or the object is; then the
-last sound observation is returned. Truncated after 10 s, which are 200 control steps.
+Terminated at success. Truncated after 10 s, which are 200 control steps. Terminated if the head rolls
+or pitches by more than 60 degrees, since a ball rolls further than it crawls; and if numbers stop being
+finite, or a node or the object is faster than 50 m/s: then the last sound observation is returned.
 
 Arguments
 ---------
@@ -160,7 +161,9 @@ TASK = Task(
     goal_bounds=((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0)),
     see_goal=see_goal,
     reward_terms={"approach": approach, "success": success, "early": early, "effort": effort, "toppled": toppled},
-    reward_weights={"approach": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "toppled": -10.0, "diverged": -10.0},
+    reward_weights={
+        "approach": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "toppled": -10.0, "diverged": -10.0,
+    },
     distance=distance,
     succeeds=succeeds,
     ends_on_success=True,

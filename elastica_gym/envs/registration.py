@@ -10,7 +10,9 @@ from .single import SingleEnv
 from .task import Task
 
 NAMESPACE = "elastica_gym"
-TASKS: dict[str, Task] = {task.name: task for task in (snake_forward.TASK, snake_reach.TASK, octopus_crawl.TASK, octopus_reach.TASK)}
+TASKS: dict[str, Task] = {
+    module.TASK.name: module.TASK for module in (snake_forward, snake_reach, octopus_crawl, octopus_reach)
+}
 IDS = tuple(f"{NAMESPACE}/{name}-v0" for name in TASKS)
 
 

@@ -1,5 +1,7 @@
 """How an episode starts: the animal somewhat bent, in any direction, slightly in motion; its object at some place."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..bodies.body import Body
@@ -63,16 +65,16 @@ def with_object_on_the_arc(rng: np.random.Generator, body: Body, state: State, i
     The angle is uniform, drawn again where the object would stand in the animal.
     """
     draw_start(rng, body, state, i)
-    _place(rng, body, state, i, lambda: (ARC, rng.uniform(0.0, 0.5 * np.pi)))
+    _place(body, state, i, lambda: (ARC, rng.uniform(0.0, 0.5 * np.pi)))
 
 
 def with_object_anywhere(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
     """Write a new start, with the object at 0.4 to 0.8 m from the head, in any direction; both are uniform."""
     draw_start(rng, body, state, i)
-    _place(rng, body, state, i, lambda: (rng.uniform(*RING), rng.uniform(-np.pi, np.pi)))
+    _place(body, state, i, lambda: (rng.uniform(*RING), rng.uniform(-np.pi, np.pi)))
 
 
-def _place(rng, body, state, i, draw) -> None:
+def _place(body: Body, state: State, i: int, draw: Callable[[], tuple[float, float]]) -> None:
     """Put the first object where ``draw`` says, as distance from the head and angle to the right [m, rad]."""
     x, senses = state.x[i], body.senses
     forward = np.array([x[c, senses.front[0] : senses.front[1] + 1].mean()
@@ -81,7 +83,8 @@ def _place(rng, body, state, i, draw) -> None:
     while True:
         away, angle = draw()
         cosine, sine = away * np.cos(angle), away * np.sin(angle)
-        place = x[[0, 2], senses.head] + (cosine * forward[0] - sine * forward[1], sine * forward[0] + cosine * forward[1])
+        way = cosine * forward[0] - sine * forward[1], sine * forward[0] + cosine * forward[1]
+        place = x[[0, 2], senses.head] + way
         if _clearance(body, x, place) > CLEAR:
             break
     state.body_x[i, 0, [0, 2]] = place

@@ -100,11 +100,16 @@ def test_different_seeds_give_different_returns(env_id, make_vec):
 def test_no_observation_is_constant(env_id, make_vec):
     env = make_vec(env_id, 16, duration=2.0)
     seen, _, _ = roll(env, random_actions(5, 40, 16), 0)
+    env.reset(seed=1)
     skin = env.body.senses.skin
-    for i, first in enumerate(skin[:-1] if env.body.cylinders else []):
+    for i, patch in enumerate(zip(skin[:-1], skin[1:], strict=True) if env.body.cylinders else []):
         # every part of the body meets the object
-        env.state.body_x[i, 0] = env.state.x[i, :, first + 2] + [0.03, 0.0, 0.03]
-    touching = env.step(random_actions(5, 1, 16)[0])[0]
+        k = sum(patch) // 2
+        env.state.body_x[i, 0, [0, 2]] = env.state.x[i, [0, 2], k]
+        env.state.body_x[i, 0, 0] += env.state.radius[i, k] + env.body.cylinders[0].radius - 0.003
+    # before it is pushed away
+    env.n_substeps = 5
+    touching = env.step(np.zeros((16, 42)))[0]
     seen = np.concatenate([seen, touching[None]])
     constant = np.flatnonzero(np.ptp(seen.reshape(-1, seen.shape[-1]), axis=0) == 0.0)
     assert [env.observation_names[k] for k in constant] == []
