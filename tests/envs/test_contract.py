@@ -1,5 +1,6 @@
 """What every registered environment keeps: a new one is tested for free."""
 
+import itertools
 import multiprocessing
 import pickle
 
@@ -102,7 +103,7 @@ def test_no_observation_is_constant(env_id, make_vec):
     seen, _, _ = roll(env, random_actions(5, 40, 16), 0)
     env.reset(seed=1)
     skin = env.body.senses.skin
-    for i, patch in enumerate(zip(skin[:-1], skin[1:], strict=True) if env.body.cylinders else []):
+    for i, patch in enumerate(itertools.pairwise(skin) if env.body.cylinders else []):
         # every part of the body meets the object
         k = sum(patch) // 2
         env.state.body_x[i, 0, [0, 2]] = env.state.x[i, [0, 2], k]
