@@ -220,7 +220,8 @@ def test_pairs_of_the_broad_phase_grow_with_the_rod():
 def test_listing_anew_changes_nothing():
     """A list that is old and one that is new hold different pairs, and give the same bits."""
     rod = coil(80)
-    model = build_model([rod], rod_contact=Contact(stiffness=50.0, friction=0.3, slip_damping=1e-3), gravity=(0, 0, -1.0))
+    law = Contact(stiffness=50.0, friction=0.3, slip_damping=1e-3)
+    model = build_model([rod], rod_contact=law, gravity=(0.0, 0.0, -1.0))
     ends = []
     for lists_anew in (False, True):
         state, control = at_rest(model, [rod])
