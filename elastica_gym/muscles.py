@@ -88,7 +88,8 @@ def basis(s: Array, widths: tuple[float, float, float]) -> Array:
         for count, width in zip(LEVELS, widths, strict=True)
         for i in range(count)
     ]
-    return np.array(rows) * ((s >= 0.0) & (s <= 1.0))
+    # a joint at an arm's border is in it, whatever rounding makes of its place
+    return np.array(rows) * ((s > -1e-9) & (s < 1.0 + 1e-9))
 
 
 def couple_matrix(muscles: Muscles, rod: Rod) -> Array:

@@ -19,7 +19,6 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 INSTALL = 'pip install "elastica-gym[train,bench]"'
-IDS = ("elastica_gym/SnakeForward-v0", "elastica_gym/SnakeReach-v0")
 SIZES = (20, 50, 100, 200)
 DAMPING = 0.002
 """Of velocities, as the original's damping of translation [1/s]"""
@@ -63,6 +62,9 @@ def main() -> None:
         print(describe_start(measure_start()))
         return
     require_extras()
+    sys.path.insert(0, str(ROOT))
+    from elastica_gym.envs import IDS
+
     results: dict[str, Any] = {"machine": describe_machine()}
     results["physics"] = [*(measure_snake(n, arguments.pairs) for n in arguments.sizes), measure_arms(arguments.pairs)]
     results["environments"] = [measure_environments(each, arguments.pairs) for each in IDS]

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from elastica_gym.bodies import snake
+from elastica_gym.bodies import octopus, snake
 from elastica_gym.cosserat import advance, at_rest
 from elastica_gym.muscles import (
     DIRECTIONS,
     N_ACTIVATIONS,
+    OCTOPUS,
     SNAKE,
     activation_names,
     activations_for,
@@ -75,3 +76,13 @@ def test_muscles_neither_push_nor_spin_a_free_snake(seed):
     assert np.abs((m * v).sum(axis=1)).max() < 1e-12
     # but for the error of the time step, of second order
     assert np.abs(spin).max() < 1e-6 * np.abs(np.cross(x.T, (m * v).T)).sum()
+
+
+def test_joints_at_the_borders_of_arms_have_muscle():
+    halves = MATRIX.reshape(3, 2, 7, 3, -1)
+    assert (np.abs(halves[..., 24]).max(axis=(2, 3)) > 0.0).all()
+    body = octopus()
+    arms = couple_matrix(OCTOPUS, body.rods[0]).reshape(3, 2, 7, 3, -1)
+    assert (np.abs(arms[:, 0, ..., 49]).max(axis=(1, 2)) > 0.0).all()
+    # the arms are mirror images, both counted from the head
+    np.testing.assert_allclose(arms[:, 0], arms[:, 1, ..., ::-1], atol=1e-12)

@@ -111,8 +111,6 @@ class Pose(NamedTuple):
 
     centre: Array
     """Centre of mass [m], (B, 3)"""
-    velocity: Array
-    """Velocity of the centre of mass [m/s], (B, 3)"""
     heading: Array
     """Horizontal unit vector from the rear to the front part, as (x, z), (B, 2)"""
     head: Array
@@ -134,7 +132,7 @@ class Pose(NamedTuple):
 def make_pose(n_envs: int, n_objects: int) -> Pose:
     """Allocate a Pose."""
     return Pose(
-        centre=np.zeros((n_envs, 3)), velocity=np.zeros((n_envs, 3)), heading=np.zeros((n_envs, 2)),
+        centre=np.zeros((n_envs, 3)), heading=np.zeros((n_envs, 2)),
         head=np.zeros((n_envs, 3)), upright=np.zeros(n_envs), objects=np.zeros((n_envs, n_objects, 3)),
         gaps=np.zeros((n_envs, n_objects)), sound=np.ones(n_envs, dtype=np.int64),
     )  # fmt: skip
@@ -212,13 +210,11 @@ def feel(model, state, senses, pose, readings):
         total, sound = 0.0, True
         for c in range(3):
             pose.centre[i, c] = 0.0
-            pose.velocity[i, c] = 0.0
         for k in range(model.mass.size):
             m = model.mass[k]
             total += m
             for c in range(3):
                 pose.centre[i, c] += m * x[c, k]
-                pose.velocity[i, c] += m * v[c, k]
                 # false for what is not a number, too
                 sound = sound and abs(v[c, k]) < senses.fastest and abs(x[c, k]) < 1e6 and abs(state.w[i, c, k]) < 1e9
         for b in range(model.cylinders.mass.size):
@@ -226,7 +222,6 @@ def feel(model, state, senses, pose, readings):
                 sound = sound and abs(state.body_v[i, b, c]) < senses.fastest and abs(state.body_w[i, b, c]) < 1e9
         for c in range(3):
             pose.centre[i, c] /= total
-            pose.velocity[i, c] /= total
             pose.head[i, c] = x[c, senses.head]
         pose.upright[i] = state.Q[i, 0, 1, senses.crown]
         pose.sound[i] = 1 if sound else 0

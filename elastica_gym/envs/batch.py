@@ -26,7 +26,8 @@ CONTROL_DT = 0.05
 CLOCK_PERIOD = 1.0
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
-                  "body_x", "body_v", "body_Q", "body_w", "body_contact")  # fmt: skip
+                  "body_x", "body_v", "body_Q", "body_w", "body_contact", "body_touch", "rod_touch")  # fmt: skip
+# the lists of pairs that may touch are not: they are checked against the positions, and any of them gives the same
 
 
 Observations = NDArray[np.float32]
@@ -77,7 +78,10 @@ class BatchEnv(VectorEnv):
         if render_mode is not None:
             raise ValueError(f"render_mode must be None, not {render_mode!r}; record a rollout to look at it")
         self.task, self.num_envs, self.render_mode = task, num_envs, render_mode
-        self.body = task.make_body(**(body_kwargs or {}))
+        try:
+            self.body = task.make_body(**(body_kwargs or {}))
+        except TypeError as error:
+            raise ValueError(f"body_kwargs: {error}") from None
         self.weights = _merge_weights(task, weights or {})
         self.spread = next(iter(task.starts)) if spread is None else spread
         if self.spread not in task.starts:
@@ -236,11 +240,16 @@ class BatchEnv(VectorEnv):
         self.elapsed += 1
         for old, new in zip(self._before, self.pose, strict=True):
             old[...] = new
+        self._feel()
+
+    def _feel(self) -> None:
+        """Feel where the animals are; of those that have diverged, the pose stays the last sound one."""
+        last = [field.copy() for field in self.pose]
         feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
         diverged = self.pose.sound == 0
-        for old, new in zip(self._before._replace(sound=self.pose.sound), self.pose, strict=True):
-            # what looks on, scripted policies among them, sees the last sound pose
-            new[diverged] = old[diverged]
+        for old, new in zip(last, self.pose, strict=True):
+            if new is not self.pose.sound:
+                new[diverged] = old[diverged]
 
     def _advance_physics(self) -> None:
         """Run all substeps of a control step, the environments shared among threads."""
@@ -316,7 +325,7 @@ class BatchEnv(VectorEnv):
             # a step of no duration moves nothing, and computes curvature and contact for the senses
             advance(self.body.model, self.state, self.control, i, i + 1, 0.0, 1)
             self.state.step[i] = 0
-        feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
+        self._feel()
         for old, new in zip(self._before, self.pose, strict=True):
             old[begun] = new[begun]
         for i in begun.tolist():
@@ -382,7 +391,7 @@ class BatchEnv(VectorEnv):
         for pose, values in zip((self.pose, self._before), saved["poses"], strict=True):
             for mine, value in zip(pose, values, strict=True):
                 mine[...] = value
-        self._seeds = list(saved["seeds"])
+        self._seeds, self._generators = list(saved["seeds"]), None
         if saved["generators"] is not None:
             self._generators = [np.random.Generator(np.random.PCG64(0)) for _ in range(self.num_envs)]
             for generator, state in zip(self._generators, saved["generators"], strict=True):

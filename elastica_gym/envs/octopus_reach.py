@@ -51,15 +51,15 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | term | weight | formula, a control step |
 |---|---|---|
 | approach | 10 | by how much the gap between the surfaces of animal and object has shrunk, in body lengths |
-| success | 10 | 1 where they touch |
+| success | 10 | 1 where the gap is 2 mm or less |
 | early | 10 | at success, the part of the episode that is left |
 | effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
 | toppled | -10 | 1 where the head has rolled or pitched by more than 60 degrees |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
-Approaches add up to what the gap has shrunk in all, so hovering earns nothing. The info also has ``distance``,
-by how much it has shrunk since reset [m]; ``is_success``; and ``termination_reason``: empty, ``success``,
-``time_limit``, ``toppled`` or ``diverged``.
+The gap is to the object as rods meet it, with domes of 0.05 m on its ends. Approaches add up to what it has
+shrunk in all, so hovering earns nothing. The info also has ``distance``, by how much it has shrunk since reset
+[m]; ``is_success``; and ``termination_reason``: empty, ``success``, ``time_limit``, ``toppled`` or ``diverged``.
 
 Starting state
 --------------
@@ -78,7 +78,7 @@ finite, or a node or the object is faster than 50 m/s: then the last sound obser
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("arc" or "anywhere"), ``body_kwargs``.
+``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("arc" or "anywhere").
 
 Version history
 ---------------

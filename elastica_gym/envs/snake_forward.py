@@ -84,6 +84,7 @@ from .task import Mask, Situation, Task, effort, in_heading_frame
 if TYPE_CHECKING:
     from .batch import BatchEnv
 
+
 def draw_goal(rng: np.random.Generator, situation: Situation) -> Array:
     """Return the direction to go (x, z), which is the initial heading, and the point to go from (x, z), (4,)."""
     return np.concatenate([situation.pose.heading[0], situation.pose.centre[0, [0, 2]]])

@@ -25,8 +25,8 @@ def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> No
 
     All else, ghosts included, is copied from the body at rest: what diverged leaves no trace.
 
-    Every rod is bent sideways by couples that are three sine waves of random strength and phase, and
-    it straightens when let go: it bends by what they would bend its thinnest part, over how much
+    The animal is one rod. It is bent sideways by couples that are three sine waves of random strength and phase, and
+    straightens when let go: it bends by what they would bend its thinnest part, over how much
     stiffer it is. The animal's centre of mass is above the origin.
     """
     heading = rng.uniform(-np.pi, np.pi)
@@ -35,14 +35,14 @@ def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> No
     velocity = rng.normal(0.0, SPEED, 2)
     for field, resting in zip(state, body.rest, strict=True):
         field[i] = resting[0]
-    for rod, start in zip(body.rods, body.model.first_slot, strict=True):
-        n, s = rod.n_elements, (np.cumsum(rod.rest_length) - 0.5 * rod.rest_length) / rod.rest_length.sum()
-        waves = sum(b * np.sin((j + 1) * np.pi * s + p) for j, (b, p) in enumerate(zip(bends, phases, strict=True)))
-        yields = (rod.radius.min() / rod.radius) ** 4
-        turned = np.cumsum(waves * yields * rod.rest_length) / body.senses.length
-        nodes, elements = slice(start, start + n + 1), slice(start, start + n)
-        _turn(heading + turned - turned.mean(), rod.nodal_mass, state.x[i, :, nodes], state.Q[i, :, :, elements])
-        state.v[i, 0, nodes], state.v[i, 2, nodes] = velocity
+    (rod,), (start,) = body.rods, body.model.first_slot
+    n, s = rod.n_elements, (np.cumsum(rod.rest_length) - 0.5 * rod.rest_length) / rod.rest_length.sum()
+    waves = sum(b * np.sin((j + 1) * np.pi * s + p) for j, (b, p) in enumerate(zip(bends, phases, strict=True)))
+    yields = (rod.radius.min() / rod.radius) ** 4
+    turned = np.cumsum(waves * yields * rod.rest_length) / body.senses.length
+    nodes, elements = slice(start, start + n + 1), slice(start, start + n)
+    _turn(heading + turned - turned.mean(), rod.nodal_mass, state.x[i, :, nodes], state.Q[i, :, :, elements])
+    state.v[i, 0, nodes], state.v[i, 2, nodes] = velocity
 
 
 def _turn(angle: Array, mass: Array, nodes: Array, directors: Array) -> None:
@@ -91,11 +91,9 @@ def _place(body: Body, state: State, i: int, draw: Callable[[], tuple[float, flo
 
 
 def _clearance(body: Body, x: Array, place: Array) -> float:
-    """Return the horizontal distance between the surfaces of the rods and of the upright object at a place [m]."""
-    least = np.inf
-    for rod, start in zip(body.rods, body.model.first_slot, strict=True):
-        nodes = x[[0, 2], start : start + rod.n_elements + 1]
-        middles = 0.5 * (nodes[:, 1:] + nodes[:, :-1])
-        away = np.linalg.norm(middles - place[:, None], axis=0) - 0.5 * rod.rest_length - rod.radius
-        least = min(least, float(away.min()))
-    return least - body.cylinders[0].radius
+    """Return the horizontal distance between the surfaces of the animal and of the upright object at a place [m]."""
+    (rod,), (start,) = body.rods, body.model.first_slot
+    nodes = x[[0, 2], start : start + rod.n_elements + 1]
+    middles = 0.5 * (nodes[:, 1:] + nodes[:, :-1])
+    away = np.linalg.norm(middles - place[:, None], axis=0) - 0.5 * rod.rest_length - rod.radius
+    return float(away.min()) - body.cylinders[0].radius

@@ -33,13 +33,15 @@ def slots(body):
     return slice(first, first + 121), slice(first, first + 120)
 
 
-def play(body, state, control, activations, seconds, ramp=0.0):
-    """Advance with given activations, which rise from nothing over a ramp [s], and yield after every control step."""
+def play(body, state, control, activations, seconds, ramp=0.0, parts=1):
+    """Advance with given activations, which rise from nothing over a ramp [s], and yield so often a control step."""
     couples = np.einsum("a,acl->cl", activations, body.couples)
     for step in range(round(seconds / CONTROL_DT)):
         control.couple[0] = couples * min(1.0, (step + 1) * CONTROL_DT / ramp if ramp else 1.0)
-        advance(body.model, state, control, 0, 1, CONTROL_DT / SUBSTEPS, SUBSTEPS)
-        yield step
+        for part in range(parts):
+            substeps = SUBSTEPS * (part + 1) // parts - SUBSTEPS * part // parts
+            advance(body.model, state, control, 0, 1, CONTROL_DT / SUBSTEPS, substeps)
+            yield step
 
 
 def all_of(direction, arm):
@@ -140,8 +142,9 @@ def test_nothing_goes_through_anything(body, scene, seed):
     state.body_x[0, 0, [0, 2]] = [[0.02, 0.32], [0.2, 0.0], [-0.2, 0.1], [0.2, -0.2]][seed]
     pose, readings = make_pose(1, 1), np.zeros((1, len(body.readings())))
     rod_touched = body_touched = 0.0
-    for _ in range(8):
-        for _ in play(body, state, control, np.sign(rng.uniform(-1.0, 1.0, 42)), 0.3):
+    for _ in range(6):
+        # what strikes at 5 m/s goes 8 mm between two looks
+        for _ in play(body, state, control, np.sign(rng.uniform(-1.0, 1.0, 42)), 0.3, parts=31):
             feel(body.model, state, body.senses, pose, readings)
             assert pose.sound[0] == 1
             assert pose.gaps[0, 0] > -5e-3

@@ -249,6 +249,7 @@ def test_step_before_reset_says_so(env_id, make_vec):
         ({"autoreset_mode": "same_step"}, "autoreset_mode must be .* 'SameStep'"),
         ({"weights": {"speed": 1.0}}, "no term 'speed'"),
         ({"weights": {"effort": float("nan")}}, "must be a finite number, not nan"),
+        ({"body_kwargs": {"legs": 4}}, "body_kwargs: .* unexpected keyword argument 'legs'"),
         ({"spread": "nowhere"}, "spread must be one of .*, not 'nowhere'"),
         ({"render_mode": "human"}, "render_mode"),
     ],

@@ -150,7 +150,7 @@ def advance(model, state, control, first, last, dt, n_substeps):
             state.decay[i, k] = exp(-model.damping_rate[k] * dt)
         start = state.time[i]
 
-        drift(model, state, i, n, 0.5 * dt)
+        drift(model, state, i, n, 0.5 * dt if n_substeps > 0 else 0.0)
         for step in range(n_substeps):
             internal(model, state, control, i, n, dt)
             applied(model, state, control, i, n, start + (step + 0.5) * dt)
