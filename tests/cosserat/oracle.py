@@ -6,8 +6,9 @@ from typing import Any
 import elastica as ea
 import numpy as np
 
-from elastica_gym.cosserat import Control, Model, Plane, Rod, State, Wave, advance, at_rest, build_model
+from elastica_gym.cosserat import Control, Model, Rod, State, Wave, advance, at_rest, build_model
 from elastica_gym.cosserat.model import Array
+from elastica_gym.cosserat.surroundings import Plane
 
 from .scenes import disturb, motion
 

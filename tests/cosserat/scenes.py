@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from elastica_gym.cosserat import Plane, Rod, State, Wave
+from elastica_gym.cosserat import Rod, State, Wave
 from elastica_gym.cosserat.model import Array, Model
+from elastica_gym.cosserat.surroundings import Plane
 
 LENGTH = 0.35
 RADIUS = 0.011 * LENGTH

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from elastica_gym.cosserat import Plane, Wave, advance
+from elastica_gym.cosserat import Wave, advance
+from elastica_gym.cosserat.surroundings import Plane
 
 from .scenes import FRICTION, GRAVITY, TIME_STEP, WAVE, ground, kinked, motion, snake
 

@@ -36,6 +36,25 @@ def external(n, applied_force, applied_torque, force, torque):
 
 
 @stage
+def dead_force(n, load, force):
+    """Add forces that are constant in the lab."""
+    for k in range(FIRST, n):
+        force[0][k] += load[0][k]
+        force[1][k] += load[1][k]
+        force[2][k] += load[2][k]
+
+
+@stage
+def dead_torque(n, load, Q, torque):
+    """Add torques that are constant in the lab."""
+    for k in range(FIRST, n):
+        t0, t1, t2 = load[0][k], load[1][k], load[2][k]
+        torque[0][k] += Q[0][0][k] * t0 + Q[0][1][k] * t1 + Q[0][2][k] * t2
+        torque[1][k] += Q[1][0][k] * t0 + Q[1][1][k] * t1 + Q[1][2][k] * t2
+        torque[2][k] += Q[2][0][k] * t0 + Q[2][1][k] * t1 + Q[2][2][k] * t2
+
+
+@stage
 def viscosity(n, v, w, length, nu, force, torque):
     """Subtract the documented damping: nu l times the mean nodal velocity, and nu_torque l w."""
     for k in range(FIRST, n):

@@ -1,0 +1,208 @@
+"""The library's step: that of the environments, with the features of a Scene and calls to the user's classes.
+
+It is an entry of its own, compiled when first needed, so that the environments start fast.
+"""
+
+from math import exp
+
+import numpy as np
+
+from ..model import BLOCK, LEAD
+from .compiler import entry, inline
+from .constraints import hold_elements, hold_nodes, move_nodes, turn_elements
+from .damping import decay, dilating_decay, drag, smooth
+from .flow import resist
+from .hooks import call
+from .joints import align, flap, pull
+from .kinematics import orthonormalise
+from .loads import dead_force, dead_torque, external, viscosity, wave
+from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows, settle, work
+
+
+@inline
+def tail(a, k):
+    """Return three rows from slot k on."""
+    return a[0][k:], a[1][k:], a[2][k:]
+
+
+@inline
+def tails(a, k):
+    """Return the nine rows of directors from slot k on."""
+    return tail(a[0], k), tail(a[1], k), tail(a[2], k)
+
+
+@inline
+def work_tail(a, k):
+    """Return the rows of scratch from slot k on."""
+    w = work(a)
+    return (w[0][k:], w[1][k:], w[2][k:], w[3][k:], w[4][k:], w[5][k:], w[6][k:], w[7][k:],
+            w[8][k:], w[9][k:], w[10][k:], w[11][k:], w[12][k:], w[13][k:], w[14][k:], w[15][k:])  # fmt: skip
+
+
+@inline
+def window(span):
+    """Return where rows are cut, and the end in the rest, so that stages see the span alone."""
+    return span[0] - LEAD, np.uint64(span[1] - span[0] + LEAD)
+
+
+@inline
+def answer(address, time):
+    """Call a hook, if there is one."""
+    return call(address, time) if address != 0 else 0  # type: ignore[call-arg]  # the compiler adds the first
+
+
+@inline
+def constrain_values(scene, state, hooks):
+    """Constrain positions and directors. Returns whether to stop."""
+    time = state.time[0]
+    hold_nodes(scene.pins, time, state.x[0])
+    hold_elements(scene.clamps, time, state.Q[0])
+    return answer(hooks.values, time)
+
+
+@inline
+def constrain_rates(scene, state, hooks):
+    """Constrain velocities. Returns whether to stop."""
+    time = state.time[0]
+    move_nodes(scene.pins, time, state.v[0])
+    turn_elements(scene.clamps, time, state.Q[0], state.w[0])
+    return answer(hooks.rates, time)
+
+
+@inline
+def point_load(loads, j, time, force):
+    """Add the force on a single node."""
+    late, k = time - loads.ramp_time[j], loads.slot[j]
+    growth = time / loads.ramp_time[j] if late < 0.0 else 1.0
+    angle = loads.angular_frequency[j] * late
+    for d in range(3):
+        f = loads.before[j, d]
+        if late >= 0.0:
+            f = loads.cosine[j, d] * np.cos(angle) + loads.sine[j, d] * np.sin(angle)
+        force[d, k] += growth * loads.growing[j, d] + f
+
+
+@inline
+def external_loads(model, scene, state, control, hooks, n):
+    """Collect in Control what acts on rods from outside, but the planes. Returns whether to stop."""
+    time, Q, loads = state.time[0], state.Q[0], scene.dead_loads
+    force, torque = control.force[0], control.torque[0]
+    for j in range(scene.point_loads.slot.size):
+        point_load(scene.point_loads, j, time, force)
+    if loads.has_force:
+        dead_force(n, rows(loads.force), rows(force))
+    if loads.has_torque:
+        dead_torque(n, rows(loads.torque), matrix(Q), rows(torque))
+    waves = scene.waves
+    for j in range(waves.ramp_time.size):
+        k, m = window(scene.wave_span[j])
+        strength = time / waves.ramp_time[j] if time < waves.ramp_time[j] else 1.0
+        wave(m, strength, waves.angular_frequency[j] * time, waves.axis[j], waves.sine[j][k:], waves.cosine[j][k:],
+             tails(Q, k), tail(torque, k))  # fmt: skip
+    for j in range(scene.flows.viscosity.size):
+        resist(scene.flows.span[j, 0], scene.flows.span[j, 1], scene.flows.viscosity[j], state.x[0], state.v[0],
+               model.weight, state.length[0], state.radius[0], force)  # fmt: skip
+    joints = scene.joints
+    for j in range(joints.stiffness.size):
+        pull(joints, j, state.x[0], state.v[0], force)
+        if joints.hinge_stiffness[j] != 0.0:
+            flap(joints, j, Q, torque)
+        if joints.turn_stiffness[j] != 0.0 or joints.turn_damping[j] != 0.0:
+            align(joints, j, Q, state.w[0], torque)
+    return answer(hooks.loads, time)
+
+
+@inline
+def resistance(model, scene, state, n):
+    """Add to the net loads what velocities meet: the documented damping, and drag."""
+    s = state
+    force, torque, v, w = rows(s.force[0]), rows(s.torque[0]), rows(s.v[0]), rows(s.w[0])
+    if model.is_viscous:
+        viscosity(n, v, w, s.length[0], (model.viscosity[0], model.viscosity[1]), force, torque)
+    if scene.drag.is_on:
+        drag(n, v, w, scene.drag.force, scene.drag.torque, force, torque)
+
+
+@inline
+def ground(model, scene, state):
+    """Add the response and friction of each plane to the rods that it acts on, after all other loads."""
+    m, s = model, state
+    if scene.planes.stiffness.size > 0:
+        s.normal_force[0, :] = 0.0
+    for j in range(scene.planes.stiffness.size):
+        k, end = window(scene.plane_span[j])
+        rows_to_write = work_tail(s.scratch[0], k)
+        # the first node reads a push from before
+        for d in range(3):
+            rows_to_write[d][LEAD - 1] = 0.0
+        settle(scene.planes, j, end, tail(s.x[0], k), tail(s.v[0], k), tails(s.Q[0], k), tail(s.w[0], k),
+               s.radius[0][k:], (m.share[0][k:], m.share[1][k:]), (m.weight[0][k:], m.weight[1][k:]), rows_to_write,
+               tail(s.force[0], k), tail(s.torque[0], k), s.normal_force[0][k:])  # fmt: skip
+
+
+@inline
+def damp(model, scene, state, hooks, n, dt):
+    """Damp velocities over a time step. Returns whether to stop."""
+    d, v, w = scene.decay, rows(state.v[0]), rows(state.w[0])
+    if d.is_on:
+        decay(n, d.node_factor, d.element_factor, v, w)
+    if d.is_dilating:
+        dilating_decay(n, dt, rows(d.dilating_rate), state.length[0], model.inv_rest_length, w)
+    for j in range(scene.filters.order.size):
+        first, last, order = scene.filters.span[j, 0], scene.filters.span[j, 1], scene.filters.order[j]
+        for i in range(3):
+            smooth(first, last, order, state.v[0, i], state.scratch[0, 0])
+            smooth(first, last - 1, order, state.w[0, i], state.scratch[0, 0])
+    return answer(hooks.damping, state.time[0])
+
+
+@inline
+def prepare(scene, state, dt):
+    """Compute the factors that do not change between steps."""
+    for k in range(scene.decay.node_rate.size):
+        scene.decay.node_factor[k] = exp(-scene.decay.node_rate[k] * dt)
+        scene.decay.element_factor[k] = exp(-scene.decay.element_rate[k] * dt)
+        state.decay[0, k] = 1.0
+
+
+@entry
+def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, is_loaded):
+    """Take steps of a symplectic scheme. Returns 0, or 1 if a hook asked to stop in the middle of a step.
+
+    Unlike `advance`, it does not merge the last drift of a step with the first of the next: what comes
+    out does not depend on where a run is cut. External loads are cleared between stages, but neither
+    before the first nor after the last, so that those set from outside act once, and callbacks see them.
+    """
+    n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
+    prepare(scene, state, dt)
+    n_kicks = scheme.kicks.size
+    for step in range(n_steps):
+        for stage in range(n_kicks):
+            drift(model, state, 0, n, scheme.drifts[stage] * dt)
+            state.time[0] += scheme.drifts[stage] * dt
+            if constrain_values(scene, state, hooks) != 0:
+                return 1
+            internal(model, state, control, 0, n, dt)
+            if is_loaded:
+                if step + stage > 0:
+                    control.force[0, :, :] = 0.0
+                    control.torque[0, :, :] = 0.0
+                if external_loads(model, scene, state, control, hooks, n) != 0:
+                    return 1
+                external(n, rows(control.force[0]), rows(control.torque[0]), rows(state.force[0]),
+                         rows(state.torque[0]))  # fmt: skip
+            resistance(model, scene, state, n)
+            ground(model, scene, state)
+            kick(model, state, 0, n, scheme.kicks[stage] * dt)
+            if constrain_rates(scene, state, hooks) != 0:
+                return 1
+        if damp(model, scene, state, hooks, n, dt) != 0:
+            return 1
+        drift(model, state, 0, n, scheme.drifts[n_kicks] * dt)
+        state.time[0] += scheme.drifts[n_kicks] * dt
+        state.step[0] += 1
+        if state.step[0] % ORTHONORMALISE_EVERY == 0:
+            orthonormalise(n, matrix(state.Q[0]))
+        if constrain_values(scene, state, hooks) != 0:
+            return 1
+    return 0
