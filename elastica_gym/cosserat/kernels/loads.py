@@ -36,6 +36,14 @@ def external(n, applied_force, applied_torque, force, torque):
 
 
 @stage
+def clear(n, force, torque):
+    """Set loads to zero."""
+    for k in range(FIRST, n):
+        force[0][k] = force[1][k] = force[2][k] = 0.0
+        torque[0][k] = torque[1][k] = torque[2][k] = 0.0
+
+
+@stage
 def dead_force(n, load, force):
     """Add forces that are constant in the lab."""
     for k in range(FIRST, n):

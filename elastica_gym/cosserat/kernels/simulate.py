@@ -15,7 +15,7 @@ from .flow import resist
 from .hooks import call
 from .joints import align, flap, pull
 from .kinematics import orthonormalise
-from .loads import dead_force, dead_torque, external, viscosity, wave
+from .loads import clear, dead_force, dead_torque, external, viscosity, wave
 from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows, settle, work
 
 
@@ -177,16 +177,21 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, is_loaded
     prepare(scene, state, dt)
     n_kicks = scheme.kicks.size
     for step in range(n_steps):
-        for stage in range(n_kicks):
+        for stage in range(n_kicks + 1):
             drift(model, state, 0, n, scheme.drifts[stage] * dt)
             state.time[0] += scheme.drifts[stage] * dt
+            if stage == n_kicks:
+                state.step[0] += 1
+                if state.step[0] % ORTHONORMALISE_EVERY == 0:
+                    orthonormalise(n, matrix(state.Q[0]))
             if constrain_values(scene, state, hooks) != 0:
                 return 1
+            if stage == n_kicks:
+                break
             internal(model, state, control, 0, n, dt)
             if is_loaded:
                 if step + stage > 0:
-                    control.force[0, :, :] = 0.0
-                    control.torque[0, :, :] = 0.0
+                    clear(n, rows(control.force[0]), rows(control.torque[0]))
                 if external_loads(model, scene, state, control, hooks, n) != 0:
                     return 1
                 external(n, rows(control.force[0]), rows(control.torque[0]), rows(state.force[0]),
@@ -196,13 +201,6 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, is_loaded
             kick(model, state, 0, n, scheme.kicks[stage] * dt)
             if constrain_rates(scene, state, hooks) != 0:
                 return 1
-        if damp(model, scene, state, hooks, n, dt) != 0:
-            return 1
-        drift(model, state, 0, n, scheme.drifts[n_kicks] * dt)
-        state.time[0] += scheme.drifts[n_kicks] * dt
-        state.step[0] += 1
-        if state.step[0] % ORTHONORMALISE_EVERY == 0:
-            orthonormalise(n, matrix(state.Q[0]))
-        if constrain_values(scene, state, hooks) != 0:
-            return 1
+            if stage == n_kicks - 1 and damp(model, scene, state, hooks, n, dt) != 0:
+                return 1
     return 0
