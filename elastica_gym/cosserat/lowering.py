@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .assembly import plane_table
+from .kernels.simulate import DENSE, SPARSE, UNLOADED
 from .model import Array, Index, Model, Waves, aligned_zeros
 from .scene import Clamps, DeadLoads, Decay, Drag, Filters, Flows, Joints, Pins, PointLoads, Scene
 from .surroundings import Plane, net_couple
@@ -38,13 +39,15 @@ class SceneBuilder:
     ----------
     model : Model
         Of all rods.
-    rods : sequence
-        The rods, in the order of the model.
+    rods, bodies : sequence
+        In the order of the model.
     """
 
-    def __init__(self, model: Model, rods: Sequence[Any]) -> None:
+    def __init__(self, model: Model, rods: Sequence[Any], bodies: Sequence[Any] = ()) -> None:
         self._slots = model.mass.size
         self._first = {id(rod): int(start) for rod, start in zip(rods, model.first_slot, strict=True)}
+        self._body = {id(body): number for number, body in enumerate(bodies)}
+        self._body_force, self._body_torque = np.zeros((len(bodies), 3)), np.zeros((len(bodies), 3))
         self._point_loads: list[tuple] = []
         self._dead_force, self._dead_torque = aligned_zeros((3, self._slots)), aligned_zeros((3, self._slots))
         self._waves: dict[tuple, tuple[Array, Array, list[_Span]]] = {}
@@ -61,11 +64,15 @@ class SceneBuilder:
     # where things are
 
     def node(self, system: Any, index: int) -> int:
-        """Return the slot of a node, counted from the end if ``index`` is negative."""
+        """Return the place of a node, counted from the end if ``index`` is negative."""
+        if id(system) in self._body:
+            return -1 - self._body[id(system)]
         return self._first[id(system)] + _index("node", index, system.n_nodes)
 
     def element(self, system: Any, index: int) -> int:
-        """Return the slot of an element, counted from the end if ``index`` is negative."""
+        """Return the place of an element, counted from the end if ``index`` is negative."""
+        if id(system) in self._body:
+            return -1 - self._body[id(system)]
         return self._first[id(system)] + _index("element", index, system.n_elems)
 
     def nodes(self, system: Any) -> slice:
@@ -89,19 +96,26 @@ class SceneBuilder:
 
     def add_dead_force(self, system: Any, force: ArrayLike) -> None:
         """Add a force that is constant in the lab on each node of a system [N], (3, n + 1)."""
-        self._dead_force[:, self.nodes(system)] += force
+        if id(system) in self._body:
+            self._body_force[self._body[id(system)]] += np.ravel(force)
+        else:
+            self._dead_force[:, self.nodes(system)] += force
 
     def add_dead_torque(self, system: Any, torque: ArrayLike) -> None:
         """Add a torque that is constant in the lab on each element of a system [N m], (3, n)."""
-        self._dead_torque[:, self.elements(system)] += torque
+        if id(system) in self._body:
+            self._body_torque[self._body[id(system)]] += np.ravel(torque)
+        else:
+            self._dead_torque[:, self.elements(system)] += torque
 
     def add_wave(
         self, system: Any, *, axis: Array, angular_frequency: float, ramp_time: float, sine: Array, cosine: Array
     ) -> None:
         """Add a travelling wave of couples at Voronoi points [N m], (n - 1,); `Waves` says how they vary."""
         key = (*np.ravel(axis).tolist(), float(angular_frequency), float(ramp_time))
-        empty = (aligned_zeros((self._slots,)), aligned_zeros((self._slots,)), [])
-        tables = self._waves.setdefault(key, empty)
+        if key not in self._waves:
+            self._waves[key] = (aligned_zeros((self._slots,)), aligned_zeros((self._slots,)), [])
+        tables = self._waves[key]
         where = self.elements(system)
         tables[0][where] += net_couple(sine)
         tables[1][where] += net_couple(cosine)
@@ -177,20 +191,24 @@ class SceneBuilder:
     # the tables
 
     @property
-    def has_loads(self) -> bool:
-        """Whether anything acts from outside but planes."""
-        rows = (self._point_loads, self._waves, self._flows, self._joints)
-        return any(map(len, rows)) or bool(self._dead_force.any() or self._dead_torque.any())
+    def loading(self) -> int:
+        """Where anything acts from outside, but planes: UNLOADED, SPARSE or DENSE."""
+        if self._waves or self._flows or self._dead_force.any() or self._dead_torque.any():
+            return DENSE
+        is_loaded = self._point_loads or self._joints or self._body_force.any() or self._body_torque.any()
+        return SPARSE if is_loaded else UNLOADED
 
     def build(self) -> Scene:
         """Return the tables."""
         waves = list(self._waves.items())
         keys = np.array([key for key, _ in waves]).reshape(len(waves), 5)
         spans = [(min(s.first for s in each), max(s.last for s in each)) for _, (_, _, each) in waves]
+        places = [row[0] for row in self._point_loads] + [place for row in self._joints for place in (*row[0], *row[1])]
         return Scene(
+            touched=np.unique(np.array([place for place in places if place >= 0], dtype=np.int64)),
             point_loads=_table(PointLoads, self._point_loads, "i", "", "3", "3", "3", "3", ""),
             dead_loads=DeadLoads(bool(self._dead_force.any()), bool(self._dead_torque.any()), self._dead_force,
-                                 self._dead_torque),
+                                 self._dead_torque, self._body_force, self._body_torque),
             waves=Waves(axis=np.ascontiguousarray(keys[:, :3]), sine=self._stacked(sine for _, (sine, _, _) in waves),
                         cosine=self._stacked(cosine for _, (_, cosine, _) in waves),
                         angular_frequency=keys[:, 3].copy(), ramp_time=keys[:, 4].copy()),

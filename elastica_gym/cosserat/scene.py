@@ -2,7 +2,8 @@
 
 The environments need none of it, so their step does not carry it. Shapes are written as in `model`:
 L slots, and a letter for the number of rows of each table. A table without rows costs nothing.
-A *span* is the slots that a row acts on: first and last + 1.
+A *span* is the slots that a row acts on: first and last + 1. A *place* is the slot of a node or
+element of a rod, or -1 - b for rigid body b.
 """
 
 from typing import NamedTuple
@@ -11,10 +12,10 @@ from .model import Array, Index, Planes, Waves
 
 
 class PointLoads(NamedTuple):
-    """The P forces on single nodes. With t0 the ramp time, each is the sum of its parts."""
+    """The P forces on single nodes and bodies. With t0 the ramp time, each is the sum of its parts."""
 
     slot: Index
-    """Slot of the node, (P,) int64"""
+    """Place, (P,) int64"""
     ramp_time: Array
     """t0 [s], (P,)"""
     growing: Array
@@ -40,6 +41,10 @@ class DeadLoads(NamedTuple):
     """On nodes [N], lab frame, (3, L)"""
     torque: Array
     """On elements [N m], lab frame, (3, L)"""
+    body_force: Array
+    """On bodies [N], lab frame, (B, 3)"""
+    body_torque: Array
+    """On bodies [N m], lab frame, (B, 3)"""
 
 
 class Flows(NamedTuple):
@@ -66,9 +71,9 @@ class Joints(NamedTuple):
     """The C joints, each between a node and element one and a node and element two."""
 
     node: Index
-    """Slots of the two nodes, (C, 2) int64"""
+    """Places of the two nodes, (C, 2) int64"""
     element: Index
-    """Slots of the two elements, (C, 2) int64"""
+    """Places of the two elements, (C, 2) int64"""
     stiffness: Array
     """Force per distance k [N/m], (C,)"""
     damping: Array
@@ -86,10 +91,10 @@ class Joints(NamedTuple):
 
 
 class Pins(NamedTuple):
-    """The N nodes whose motion is prescribed."""
+    """The N nodes and bodies whose motion is prescribed."""
 
     slot: Index
-    """Slot of the node, (N,) int64"""
+    """Place, (N,) int64"""
     start_time: Array
     """Time from which on the node is held [s]; until then it moves with ``velocity``; (N,)"""
     velocity: Array
@@ -101,10 +106,10 @@ class Pins(NamedTuple):
 
 
 class Clamps(NamedTuple):
-    """The N elements whose rotation is prescribed."""
+    """The N elements and bodies whose rotation is prescribed."""
 
     slot: Index
-    """Slot of the element, (N,) int64"""
+    """Place, (N,) int64"""
     start_time: Array
     """Time from which on the element is held [s]; until then it turns with ``omega``; (N,)"""
     omega: Array
@@ -148,6 +153,8 @@ class Filters(NamedTuple):
 class Scene(NamedTuple):
     """All features of a simulation that are not in its Model."""
 
+    touched: Index
+    """Slots of the rods that point loads and joints act on, (T,) int64"""
     point_loads: PointLoads
     dead_loads: DeadLoads
     waves: Waves

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .assembly import at_rest, build_model, lay_out
-from .kernels.simulate import simulate
+from .kernels.simulate import DENSE, simulate
 from .lowering import SceneBuilder, is_built_in
 from .model import Array
 from .modules.declaration import Declaration
@@ -92,7 +92,7 @@ class Simulation:
             callback = declaration.make()
             self._callbacks.append((callback, declaration.observed, _interval(callback)))
         self.scene = builder.build()
-        self._is_loaded = builder.has_loads or bool(self._hooks["loads"].calls)
+        self._loading = DENSE if self._hooks["loads"].calls else builder.loading
 
     # set up
 
@@ -214,18 +214,23 @@ class Simulation:
                 lay_out(self.model._asdict(), rod._lowered(), int(first))
             self._as_laid_out[:] = self._material
         self.state.time[0] = time
-        is_loaded = self._is_loaded or bool(self.control.force.any() or self.control.torque.any())
         hooks = Hooks(**{name: hook.address for name, hook in self._hooks.items()})
-        stopped = simulate(self.model, self.scene, self.state, self.control, hooks, scheme, dt, n_steps, is_loaded)
+        stopped = simulate(self.model, self.scene, self.state, self.control, hooks, scheme, dt, n_steps,
+                           DENSE if self._has_loads else self._loading)  # fmt: skip
         if stopped:
             self._raise_error()
         return float(self.state.time[0])
 
+    @property
+    def _has_loads(self) -> bool:
+        """Whether any load from outside is set."""
+        arrays = (self.control.force, self.control.torque, self.state.body_force, self.state.body_torque)
+        return any(bool(each.any()) for each in arrays)
+
     def clear_loads(self) -> None:
         """Forget the loads from outside."""
-        if self._is_loaded or self.control.force.any() or self.control.torque.any():
-            self.control.force[:] = 0.0
-            self.control.torque[:] = 0.0
+        for each in (self.control.force, self.control.torque, self.state.body_force, self.state.body_torque):
+            each[:] = 0.0
 
     def _raise_error(self) -> None:
         for hook in self._hooks.values():

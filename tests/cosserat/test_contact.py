@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from elastica_gym.cosserat import Contact, Cylinder, Rod, advance, at_rest, build_model
+from elastica_gym.cosserat import Rod, advance, at_rest, build_model
 from elastica_gym.cosserat.model import Array, State
+from elastica_gym.cosserat.surroundings import Contact, Cylinder
 
 K, NU, MU, C = 1e3, 1e-3, 0.3, 2.0
 SMOOTH = Contact(stiffness=K, damping=NU)

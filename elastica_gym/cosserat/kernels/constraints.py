@@ -1,60 +1,55 @@
-"""Prescribed motion of single nodes and elements."""
+"""Prescribed motion of single nodes, elements and bodies."""
 
-from .compiler import inline
+from .compiler import apart, inner
+from .ends import material_of, set_to, vector_of
+from .vectors import dot, plus, vector
 
 
-@inline
-def hold_nodes(pins, time, x):
-    """Set the positions of nodes that are held."""
+@apart
+def hold(pins, clamps, time, x, Q, body_x, body_Q):
+    """Set the positions and directors of what is held."""
     for j in range(pins.slot.size):
         if time > pins.start_time[j]:
             for d in range(3):
                 if pins.axes[j, d] != 0.0:
-                    x[d, pins.slot[j]] = pins.position[j, d]
-
-
-@inline
-def hold_elements(clamps, time, Q):
-    """Set the directors of elements that are held."""
+                    set_to(x, body_x, pins.slot[j], d, pins.position[j, d])
     for j in range(clamps.slot.size):
         if time > clamps.start_time[j] and clamps.has_directors[j] != 0.0:
+            k = clamps.slot[j]
             for a in range(3):
                 for b in range(3):
-                    Q[a, b, clamps.slot[j]] = clamps.directors[j, a, b]
+                    if k >= 0:
+                        Q[a, b, k] = clamps.directors[j, a, b]
+                    else:
+                        body_Q[-1 - k, a, b] = clamps.directors[j, a, b]
 
 
-@inline
-def move_nodes(pins, time, v):
-    """Set the velocities of nodes that move as prescribed, or stop them along the axes that are held."""
+@apart
+def move(pins, clamps, time, v, Q, w, body_v, body_Q, body_w):
+    """Set the velocities of what moves as prescribed, and stop what is held along and about the axes that are."""
     for j in range(pins.slot.size):
-        k = pins.slot[j]
+        is_held = time > pins.start_time[j]
         for d in range(3):
-            if time > pins.start_time[j]:
-                v[d, k] = 0.0 if pins.axes[j, d] != 0.0 else v[d, k]
-            else:
-                v[d, k] = pins.velocity[j, d]
-
-
-@inline
-def turn_elements(clamps, time, Q, w):
-    """Set the angular velocities of elements that turn as prescribed, or stop them about the axes that are held."""
+            if not is_held:
+                set_to(v, body_v, pins.slot[j], d, pins.velocity[j, d])
+            elif pins.axes[j, d] != 0.0:
+                set_to(v, body_v, pins.slot[j], d, 0.0)
     for j in range(clamps.slot.size):
         k = clamps.slot[j]
-        if not time > clamps.start_time[j]:
-            w[0, k], w[1, k], w[2, k] = clamps.omega[j, 0], clamps.omega[j, 1], clamps.omega[j, 2]
-        elif clamps.axes[j, 0] * clamps.axes[j, 1] * clamps.axes[j, 2] != 0.0:
-            w[0, k] = w[1, k] = w[2, k] = 0.0
-        else:
-            stop_about(clamps.axes[j], Q, w, k)
+        spin = vector(clamps.omega[j])
+        if time > clamps.start_time[j]:
+            spin = free_spin(clamps.axes[j], Q, body_Q, k, vector_of(w, body_w, k))
+        for d in range(3):
+            set_to(w, body_w, k, d, spin[d])
 
 
-@inline
-def stop_about(axes, Q, w, k):
-    """Take the part about some lab axes out of an element's angular velocity."""
-    w0, w1, w2 = w[0, k], w[1, k], w[2, k]
+@inner
+def free_spin(axes, Q, body_Q, k, spin):
+    """Return an angular velocity without its parts about some axes of the lab."""
+    if axes[0] * axes[1] * axes[2] != 0.0:
+        return 0.0, 0.0, 0.0
     for d in range(3):
-        lab = Q[0, d, k] * w0 + Q[1, d, k] * w1 + Q[2, d, k] * w2
         if axes[d] != 0.0:
-            w[0, k] -= Q[0, d, k] * lab
-            w[1, k] -= Q[1, d, k] * lab
-            w[2, k] -= Q[2, d, k] * lab
+            about = material_of(Q, body_Q, k, (1.0 * (d == 0), 1.0 * (d == 1), 1.0 * (d == 2)))
+            spin = plus(spin, -dot(spin, about), about)
+    return spin

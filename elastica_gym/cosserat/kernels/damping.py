@@ -2,7 +2,7 @@
 
 from math import exp
 
-from .compiler import FIRST, inline, stage
+from .compiler import FIRST, apart, stage
 
 
 @stage
@@ -41,7 +41,7 @@ def dilating_decay(n, dt, rate, length, inv_rest_length, w):
         w[2][k] *= exp(h * rate[2][k])
 
 
-@inline
+@apart
 def smooth(first, last, order, rate, term):
     """Take the shortest waves out of one row of velocities, from slot first to last - 1.
 

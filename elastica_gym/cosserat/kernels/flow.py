@@ -2,10 +2,10 @@
 
 from math import log, pi
 
-from .compiler import inline
+from .compiler import apart
 
 
-@inline
+@apart
 def resist(first, last, mu, x, v, weight, length, radius, force):
     """Add -4 pi mu l / ln(L/r) (I - t t^T/2) v on the elements from first to last - 1, half to each node."""
     total = 0.0

@@ -2,82 +2,65 @@
 
 from math import sqrt
 
-from .compiler import inline
+from .compiler import apart, inner
+from .ends import add_to, director_of, lab_of, material_of, vector_of
 from .rotations import half_angle_over_sine
+from .vectors import cross, dot, plus, times
 
 
-@inline
-def pull(joints, j, x, v, force):
-    """Add the force of joint j, k (x2 - x1) + nu (v2 - v1), to its two nodes."""
-    one, two = joints.node[j, 0], joints.node[j, 1]
-    for d in range(3):
-        f = joints.stiffness[j] * (x[d, two] - x[d, one]) + joints.damping[j] * (v[d, two] - v[d, one])
-        force[d, one] += f
-        force[d, two] -= f
+@apart
+def join(joints, x, v, Q, w, force, torque, body_x, body_v, body_Q, body_w, body_force, body_torque):
+    """Add the loads of all joints."""
+    for j in range(joints.stiffness.size):
+        one, two = joints.node[j, 0], joints.node[j, 1]
+        apart_by = plus(vector_of(x, body_x, two), -1.0, vector_of(x, body_x, one))
+        parting = plus(vector_of(v, body_v, two), -1.0, vector_of(v, body_v, one))
+        f = plus(times(joints.stiffness[j], apart_by), joints.damping[j], parting)
+        add_to(force, body_force, one, 1.0, f)
+        add_to(force, body_force, two, -1.0, f)
+
+        one, two = joints.element[j, 0], joints.element[j, 1]
+        t = 0.0, 0.0, 0.0
+        if joints.hinge_stiffness[j] != 0.0:
+            t = flap(joints, j, director_of(Q, body_Q, two, 2))
+        if joints.turn_stiffness[j] != 0.0:
+            t = plus(t, joints.turn_stiffness[j], turn(joints.rest_rotation[j], Q, body_Q, one, two))
+        if joints.turn_damping[j] != 0.0:
+            turning = plus(lab_of(Q, body_Q, two, vector_of(w, body_w, two)), -1.0,
+                           lab_of(Q, body_Q, one, vector_of(w, body_w, one)))  # fmt: skip
+            t = plus(t, -joints.turn_damping[j], turning)
+        add_to(torque, body_torque, one, -1.0, material_of(Q, body_Q, one, t))
+        add_to(torque, body_torque, two, 1.0, material_of(Q, body_Q, two, t))
 
 
-@inline
-def give_torque(one, two, Q, torque, t0, t1, t2):
-    """Add a torque of the lab frame to element two, and its opposite to element one."""
-    for d in range(3):
-        torque[d, one] -= Q[d, 0, one] * t0 + Q[d, 1, one] * t1 + Q[d, 2, one] * t2
-        torque[d, two] += Q[d, 0, two] * t0 + Q[d, 1, two] * t1 + Q[d, 2, two] * t2
+@inner
+def flap(joints, j, d3):
+    """Return the torque that keeps the tangent of element two in a plane, -kt (d3 . h)(d3 x h), in the lab."""
+    h = joints.axis[j, 0], joints.axis[j, 1], joints.axis[j, 2]
+    return times(-joints.hinge_stiffness[j] * dot(d3, h), cross(d3, h))
 
 
-@inline
-def flap(joints, j, Q, torque):
-    """Add the torque that keeps the tangent of element two in a plane: -kt (d3 . h)(d3 x h)."""
-    one, two = joints.element[j, 0], joints.element[j, 1]
-    h0, h1, h2 = joints.axis[j, 0], joints.axis[j, 1], joints.axis[j, 2]
-    d0, d1, d2 = Q[2, 0, two], Q[2, 1, two], Q[2, 2, two]
-    c = -joints.hinge_stiffness[j] * (d0 * h0 + d1 * h1 + d2 * h2)
-    give_torque(one, two, Q, torque, c * (d1 * h2 - d2 * h1), c * (d2 * h0 - d0 * h2), c * (d0 * h1 - d1 * h0))
-
-
-@inline
-def align(joints, j, Q, w, torque):
-    """Add the torque kt Q2^T vee log(Q2 Q1^T C) - nut (Q2^T w2 - Q1^T w1)."""
-    one, two = joints.element[j, 0], joints.element[j, 1]
-    axis, trace = deviation(joints.rest_rotation[j], Q, one, two)
-    a0, a1, a2 = axis
-    # as in `curvature.logarithm`: with h = cos(theta/2), theta/|a| is (b/sin b)/h, b = theta/2
-    c = min(1.0, 0.5 * trace - 0.5)
-    inv_h = sqrt(2.0 / (1.0 + c)) if c > 0.0 else sqrt(2.0 * (1.0 - c) / (a0 * a0 + a1 * a1 + a2 * a2))
-    h = 0.5 * (1.0 + c) * inv_h
-    scale = joints.turn_stiffness[j] * half_angle_over_sine(h) * inv_h
-    nut = joints.turn_damping[j]
-    t0 = turn_torque(0, a0, a1, a2, scale, nut, Q, w, one, two)
-    t1 = turn_torque(1, a0, a1, a2, scale, nut, Q, w, one, two)
-    t2 = turn_torque(2, a0, a1, a2, scale, nut, Q, w, one, two)
-    give_torque(one, two, Q, torque, t0, t1, t2)
-
-
-@inline
-def deviation(rest, Q, one, two):
-    """Return the axial vector of R = Q2 Q1^T C, (R - R^T)/2, and the trace of R."""
-    R00, R01, R02 = deviation_row(rest, Q, one, two, 0)
-    R10, R11, R12 = deviation_row(rest, Q, one, two, 1)
-    R20, R21, R22 = deviation_row(rest, Q, one, two, 2)
-    return (0.5 * (R21 - R12), 0.5 * (R02 - R20), 0.5 * (R10 - R01)), R00 + R11 + R22
-
-
-@inline
-def deviation_row(rest, Q, one, two, i):
-    """Return row i of Q2 Q1^T C."""
-    p0 = Q[i, 0, two] * Q[0, 0, one] + Q[i, 1, two] * Q[0, 1, one] + Q[i, 2, two] * Q[0, 2, one]
-    p1 = Q[i, 0, two] * Q[1, 0, one] + Q[i, 1, two] * Q[1, 1, one] + Q[i, 2, two] * Q[1, 2, one]
-    p2 = Q[i, 0, two] * Q[2, 0, one] + Q[i, 1, two] * Q[2, 1, one] + Q[i, 2, two] * Q[2, 2, one]
-    return (
-        p0 * rest[0, 0] + p1 * rest[1, 0] + p2 * rest[2, 0],
-        p0 * rest[0, 1] + p1 * rest[1, 1] + p2 * rest[2, 1],
-        p0 * rest[0, 2] + p1 * rest[1, 2] + p2 * rest[2, 2],
+@inner
+def turn(rest, Q, body_Q, one, two):
+    """Return the rotation that is left to the rest rotation, Q2^T vee log(Q2 Q1^T C), in the lab."""
+    # the rows of C^T Q1 are the directors that element two has at rest, so R = Q2 (C^T Q1)^T
+    a, b, c = (director_of(Q, body_Q, one, 0), director_of(Q, body_Q, one, 1), director_of(Q, body_Q, one, 2))
+    p = mixed(rest, 0, a, b, c), mixed(rest, 1, a, b, c), mixed(rest, 2, a, b, c)
+    q = director_of(Q, body_Q, two, 0), director_of(Q, body_Q, two, 1), director_of(Q, body_Q, two, 2)
+    axis = (
+        0.5 * (dot(q[2], p[1]) - dot(q[1], p[2])),
+        0.5 * (dot(q[0], p[2]) - dot(q[2], p[0])),
+        0.5 * (dot(q[1], p[0]) - dot(q[0], p[1])),
     )
+    # as in `curvature.logarithm`: with h = cos(theta/2), theta/|a| is (b/sin b)/h, b = theta/2
+    cosine = 0.5 * (dot(q[0], p[0]) + dot(q[1], p[1]) + dot(q[2], p[2])) - 0.5
+    cosine = cosine if cosine < 1.0 else 1.0
+    inv_h = sqrt(2.0 / (1.0 + cosine)) if cosine > 0.0 else sqrt(2.0 * (1.0 - cosine) / dot(axis, axis))
+    size = half_angle_over_sine(0.5 * (1.0 + cosine) * inv_h) * inv_h
+    return lab_of(Q, body_Q, two, times(size, axis))
 
 
-@inline
-def turn_torque(d, a0, a1, a2, scale, nut, Q, w, one, two):
-    """Return component d in the lab of a joint's torque."""
-    spring = scale * (Q[0, d, two] * a0 + Q[1, d, two] * a1 + Q[2, d, two] * a2)
-    w_two = Q[0, d, two] * w[0, two] + Q[1, d, two] * w[1, two] + Q[2, d, two] * w[2, two]
-    w_one = Q[0, d, one] * w[0, one] + Q[1, d, one] * w[1, one] + Q[2, d, one] * w[2, one]
-    return spring - nut * (w_two - w_one)
+@inner
+def mixed(rest, i, a, b, c):
+    """Return row i of C^T Q, given the rows of Q."""
+    return plus(plus(times(rest[0, i], a), rest[1, i], b), rest[2, i], c)

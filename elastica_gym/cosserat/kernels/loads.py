@@ -2,7 +2,7 @@
 
 from math import cos, sin
 
-from .compiler import FIRST, ONE, stage
+from .compiler import FIRST, ONE, inner, stage
 
 
 @stage
@@ -41,6 +41,24 @@ def clear(n, force, torque):
     for k in range(FIRST, n):
         force[0][k] = force[1][k] = force[2][k] = 0.0
         torque[0][k] = torque[1][k] = torque[2][k] = 0.0
+
+
+@inner
+def clear_at(slots, force, torque):
+    """Set loads in some slots to zero."""
+    for j in range(slots.size):
+        for d in range(3):
+            force[d, slots[j]] = torque[d, slots[j]] = 0.0
+
+
+@inner
+def external_at(slots, applied_force, applied_torque, force, torque):
+    """Add the loads that Control holds in some slots."""
+    for j in range(slots.size):
+        k = slots[j]
+        for d in range(3):
+            force[d, k] += applied_force[d, k]
+            torque[d, k] += applied_torque[d, k]
 
 
 @stage

@@ -3,35 +3,41 @@
 It is an entry of its own, compiled when first needed, so that the environments start fast.
 """
 
-from math import exp
+from math import cos, exp, sin
 
 import numpy as np
 
 from ..model import BLOCK, LEAD
-from .compiler import entry, inline
-from .constraints import hold_elements, hold_nodes, move_nodes, turn_elements
+from .bodies import orthonormalise_bodies
+from .compiler import apart, entry, inner
+from .constraints import hold, move
 from .damping import decay, dilating_decay, drag, smooth
+from .ends import add_to
 from .flow import resist
 from .hooks import call
-from .joints import align, flap, pull
+from .joints import join
 from .kinematics import orthonormalise
-from .loads import clear, dead_force, dead_torque, external, viscosity, wave
+from .loads import clear, clear_at, dead_force, dead_torque, external, external_at, viscosity, wave
 from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows, settle, work
+from .vectors import add, plus, times, to_material, vector
+
+# where there are loads from outside: nowhere, in a few slots, everywhere
+UNLOADED, SPARSE, DENSE = 0, 1, 2
 
 
-@inline
+@inner
 def tail(a, k):
     """Return three rows from slot k on."""
     return a[0][k:], a[1][k:], a[2][k:]
 
 
-@inline
+@inner
 def tails(a, k):
     """Return the nine rows of directors from slot k on."""
     return tail(a[0], k), tail(a[1], k), tail(a[2], k)
 
 
-@inline
+@inner
 def work_tail(a, k):
     """Return the rows of scratch from slot k on."""
     w = work(a)
@@ -39,56 +45,68 @@ def work_tail(a, k):
             w[8][k:], w[9][k:], w[10][k:], w[11][k:], w[12][k:], w[13][k:], w[14][k:], w[15][k:])  # fmt: skip
 
 
-@inline
+@inner
 def window(span):
     """Return where rows are cut, and the end in the rest, so that stages see the span alone."""
     return span[0] - LEAD, np.uint64(span[1] - span[0] + LEAD)
 
 
-@inline
+@inner
 def answer(address, time):
     """Call a hook, if there is one."""
     return call(address, time) if address != 0 else 0  # type: ignore[call-arg]  # the compiler adds the first
 
 
-@inline
+@inner
 def constrain_values(scene, state, hooks):
     """Constrain positions and directors. Returns whether to stop."""
     time = state.time[0]
-    hold_nodes(scene.pins, time, state.x[0])
-    hold_elements(scene.clamps, time, state.Q[0])
+    if scene.pins.slot.size + scene.clamps.slot.size > 0:
+        hold(scene.pins, scene.clamps, time, state.x[0], state.Q[0], state.body_x[0], state.body_Q[0])
     return answer(hooks.values, time)
 
 
-@inline
+@inner
 def constrain_rates(scene, state, hooks):
     """Constrain velocities. Returns whether to stop."""
     time = state.time[0]
-    move_nodes(scene.pins, time, state.v[0])
-    turn_elements(scene.clamps, time, state.Q[0], state.w[0])
+    if scene.pins.slot.size + scene.clamps.slot.size > 0:
+        move(scene.pins, scene.clamps, time, state.v[0], state.Q[0], state.w[0], state.body_v[0], state.body_Q[0],
+             state.body_w[0])  # fmt: skip
     return answer(hooks.rates, time)
 
 
-@inline
-def point_load(loads, j, time, force):
-    """Add the force on a single node."""
-    late, k = time - loads.ramp_time[j], loads.slot[j]
-    growth = time / loads.ramp_time[j] if late < 0.0 else 1.0
-    angle = loads.angular_frequency[j] * late
-    for d in range(3):
-        f = loads.before[j, d]
-        if late >= 0.0:
-            f = loads.cosine[j, d] * np.cos(angle) + loads.sine[j, d] * np.sin(angle)
-        force[d, k] += growth * loads.growing[j, d] + f
+@apart
+def point_forces(loads, time, force, body_force):
+    """Add the forces on single nodes and bodies."""
+    for j in range(loads.slot.size):
+        late = time - loads.ramp_time[j]
+        growth = time / loads.ramp_time[j] if late < 0.0 else 1.0
+        f = times(growth, vector(loads.growing[j]))
+        if late < 0.0:
+            f = plus(f, 1.0, vector(loads.before[j]))
+        elif loads.angular_frequency[j] != 0.0:
+            angle = loads.angular_frequency[j] * late
+            f = plus(plus(f, cos(angle), vector(loads.cosine[j])), sin(angle), vector(loads.sine[j]))
+        add_to(force, body_force, loads.slot[j], 1.0, f)
 
 
-@inline
+@apart
+def dead_loads_on_bodies(loads, body_Q, body_force, body_torque):
+    """Add what is constant in the lab to bodies."""
+    for b in range(body_force.shape[0]):
+        add(body_force[b], 1.0, vector(loads.body_force[b]))
+        add(body_torque[b], 1.0, to_material(body_Q[b], vector(loads.body_torque[b])))
+
+
+@apart
 def external_loads(model, scene, state, control, hooks, n):
     """Collect in Control what acts on rods from outside, but the planes. Returns whether to stop."""
     time, Q, loads = state.time[0], state.Q[0], scene.dead_loads
     force, torque = control.force[0], control.torque[0]
-    for j in range(scene.point_loads.slot.size):
-        point_load(scene.point_loads, j, time, force)
+    if scene.point_loads.slot.size > 0:
+        point_forces(scene.point_loads, time, force, state.body_force[0])
+    dead_loads_on_bodies(loads, state.body_Q[0], state.body_force[0], state.body_torque[0])
     if loads.has_force:
         dead_force(n, rows(loads.force), rows(force))
     if loads.has_torque:
@@ -102,17 +120,33 @@ def external_loads(model, scene, state, control, hooks, n):
     for j in range(scene.flows.viscosity.size):
         resist(scene.flows.span[j, 0], scene.flows.span[j, 1], scene.flows.viscosity[j], state.x[0], state.v[0],
                model.weight, state.length[0], state.radius[0], force)  # fmt: skip
-    joints = scene.joints
-    for j in range(joints.stiffness.size):
-        pull(joints, j, state.x[0], state.v[0], force)
-        if joints.hinge_stiffness[j] != 0.0:
-            flap(joints, j, Q, torque)
-        if joints.turn_stiffness[j] != 0.0 or joints.turn_damping[j] != 0.0:
-            align(joints, j, Q, state.w[0], torque)
+    if scene.joints.stiffness.size > 0:
+        join(scene.joints, state.x[0], state.v[0], Q, state.w[0], force, torque, state.body_x[0], state.body_v[0],
+             state.body_Q[0], state.body_w[0], state.body_force[0], state.body_torque[0])  # fmt: skip
     return answer(hooks.loads, time)
 
 
-@inline
+@inner
+def clear_loads(scene, state, control, n, loading):
+    """Set the loads from outside to zero."""
+    if loading == DENSE:
+        clear(n, rows(control.force[0]), rows(control.torque[0]))
+    else:
+        clear_at(scene.touched, control.force[0], control.torque[0])
+    state.body_force[0, :, :] = 0.0
+    state.body_torque[0, :, :] = 0.0
+
+
+@inner
+def add_loads(scene, state, control, n, loading):
+    """Add the loads from outside to the net loads."""
+    if loading == DENSE:
+        external(n, rows(control.force[0]), rows(control.torque[0]), rows(state.force[0]), rows(state.torque[0]))
+    else:
+        external_at(scene.touched, control.force[0], control.torque[0], state.force[0], state.torque[0])
+
+
+@inner
 def resistance(model, scene, state, n):
     """Add to the net loads what velocities meet: the documented damping, and drag."""
     s = state
@@ -123,12 +157,11 @@ def resistance(model, scene, state, n):
         drag(n, v, w, scene.drag.force, scene.drag.torque, force, torque)
 
 
-@inline
+@apart
 def ground(model, scene, state):
     """Add the response and friction of each plane to the rods that it acts on, after all other loads."""
     m, s = model, state
-    if scene.planes.stiffness.size > 0:
-        s.normal_force[0, :] = 0.0
+    s.normal_force[0, :] = 0.0
     for j in range(scene.planes.stiffness.size):
         k, end = window(scene.plane_span[j])
         rows_to_write = work_tail(s.scratch[0], k)
@@ -140,7 +173,7 @@ def ground(model, scene, state):
                tail(s.force[0], k), tail(s.torque[0], k), s.normal_force[0][k:])  # fmt: skip
 
 
-@inline
+@inner
 def damp(model, scene, state, hooks, n, dt):
     """Damp velocities over a time step. Returns whether to stop."""
     d, v, w = scene.decay, rows(state.v[0]), rows(state.w[0])
@@ -156,7 +189,7 @@ def damp(model, scene, state, hooks, n, dt):
     return answer(hooks.damping, state.time[0])
 
 
-@inline
+@inner
 def prepare(scene, state, dt):
     """Compute the factors that do not change between steps."""
     for k in range(scene.decay.node_rate.size):
@@ -166,12 +199,13 @@ def prepare(scene, state, dt):
 
 
 @entry
-def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, is_loaded):
+def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
     """Take steps of a symplectic scheme. Returns 0, or 1 if a hook asked to stop in the middle of a step.
 
     Unlike `advance`, it does not merge the last drift of a step with the first of the next: what comes
     out does not depend on where a run is cut. External loads are cleared between stages, but neither
     before the first nor after the last, so that those set from outside act once, and callbacks see them.
+    ``loading`` is one of UNLOADED, SPARSE (only where ``scene.touched`` says) and DENSE.
     """
     n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
     prepare(scene, state, dt)
@@ -184,20 +218,21 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, is_loaded
                 state.step[0] += 1
                 if state.step[0] % ORTHONORMALISE_EVERY == 0:
                     orthonormalise(n, matrix(state.Q[0]))
+                    orthonormalise_bodies(state.body_Q[0])
             if constrain_values(scene, state, hooks) != 0:
                 return 1
             if stage == n_kicks:
                 break
             internal(model, state, control, 0, n, dt)
-            if is_loaded:
+            if loading != UNLOADED:
                 if step + stage > 0:
-                    clear(n, rows(control.force[0]), rows(control.torque[0]))
+                    clear_loads(scene, state, control, n, loading)
                 if external_loads(model, scene, state, control, hooks, n) != 0:
                     return 1
-                external(n, rows(control.force[0]), rows(control.torque[0]), rows(state.force[0]),
-                         rows(state.torque[0]))  # fmt: skip
+                add_loads(scene, state, control, n, loading)
             resistance(model, scene, state, n)
-            ground(model, scene, state)
+            if scene.planes.stiffness.size > 0:
+                ground(model, scene, state)
             kick(model, state, 0, n, scheme.kicks[stage] * dt)
             if constrain_rates(scene, state, hooks) != 0:
                 return 1
