@@ -17,7 +17,16 @@ from .boundary_conditions import (
     OneEndFixedRod,
 )
 from .callback_functions import CallBackBaseClass, ExportCallBack, MyCallBack
-from .contact_forces import NoContact, RodPlaneContact, RodPlaneContactWithAnisotropicFriction
+from .contact_forces import (
+    CylinderPlaneContact,
+    NoContact,
+    RodCylinderContact,
+    RodPlaneContact,
+    RodPlaneContactWithAnisotropicFriction,
+    RodRodContact,
+    RodSelfContact,
+    RodSphereContact,
+)
 from .dissipation import AnalyticalLinearDamper, DamperBase, LaplaceDissipationFilter, RayleighDissipation
 from .external_forces import (
     EndpointForces,
@@ -29,10 +38,20 @@ from .external_forces import (
     UniformTorques,
 )
 from .interaction import AnisotropicFrictionalPlane, InteractionPlane, SlenderBodyTheory
-from .joint import BallJoint, ConnectionBase, FixedJoint, FreeJoint, HingeJoint, SphericalJoint
+from .joint import (
+    BallJoint,
+    ConnectionBase,
+    ExternalContact,
+    FixedJoint,
+    FreeJoint,
+    HingeJoint,
+    SelfContact,
+    SphericalJoint,
+)
 from .kernels.step import advance
 from .model import Control, Model, State, make_control, make_state
 from .modules import BaseSystemCollection, CallBacks, Connections, Constraints, Contact, Damping, Forcing
+from .rigidbody import Cylinder, RigidBodyBase, Sphere
 from .rod import Rod, stable_time_step
 from .rod.cosserat_rod import CosseratRod
 from .rod.knot_theory import KnotTheory, compute_link, compute_twist, compute_writhe
@@ -43,15 +62,77 @@ from .timestepper import extend_stepper_interface, integrate
 from .timestepper.symplectic_steppers import PEFRL, PositionVerlet
 
 __all__ = [
-    "PEFRL", "AnalyticalLinearDamper", "AnisotropicFrictionalPlane", "BallJoint", "BaseSystemCollection",
-    "CallBackBaseClass", "CallBacks", "ConnectionBase", "Connections", "ConstraintBase", "Constraints", "Contact",
-    "Control", "CosseratRod", "DamperBase", "Damping", "EndpointForces", "EndpointForcesSinusoidal", "ExportCallBack",
-    "FixedConstraint", "FixedJoint", "Forcing", "FreeBC", "FreeJoint", "FreeRod", "GeneralConstraint", "GravityForces",
-    "HelicalBucklingBC", "HingeJoint", "InteractionPlane", "KnotTheory", "LaplaceDissipationFilter", "Model",
-    "MuscleTorques", "MyCallBack", "NoContact", "NoForces", "OneEndFixedBC", "OneEndFixedRod", "Plane",
-    "PositionVerlet", "RayleighDissipation", "Rod", "RodBase", "RodPlaneContact",
-    "RodPlaneContactWithAnisotropicFriction", "SlenderBodyTheory", "SphericalJoint", "State", "UniformForces",
-    "UniformTorques", "Wave",
-    "advance", "at_rest", "build_model", "compute_link", "compute_twist", "compute_writhe", "extend_stepper_interface",
-    "integrate", "make_control", "make_state", "stable_time_step",
+    "PEFRL",
+    "AnalyticalLinearDamper",
+    "AnisotropicFrictionalPlane",
+    "BallJoint",
+    "BaseSystemCollection",
+    "CallBackBaseClass",
+    "CallBacks",
+    "ConnectionBase",
+    "Connections",
+    "ConstraintBase",
+    "Constraints",
+    "Contact",
+    "Control",
+    "CosseratRod",
+    "Cylinder",
+    "CylinderPlaneContact",
+    "DamperBase",
+    "Damping",
+    "EndpointForces",
+    "EndpointForcesSinusoidal",
+    "ExportCallBack",
+    "ExternalContact",
+    "FixedConstraint",
+    "FixedJoint",
+    "Forcing",
+    "FreeBC",
+    "FreeJoint",
+    "FreeRod",
+    "GeneralConstraint",
+    "GravityForces",
+    "HelicalBucklingBC",
+    "HingeJoint",
+    "InteractionPlane",
+    "KnotTheory",
+    "LaplaceDissipationFilter",
+    "Model",
+    "MuscleTorques",
+    "MyCallBack",
+    "NoContact",
+    "NoForces",
+    "OneEndFixedBC",
+    "OneEndFixedRod",
+    "Plane",
+    "PositionVerlet",
+    "RayleighDissipation",
+    "RigidBodyBase",
+    "Rod",
+    "RodBase",
+    "RodCylinderContact",
+    "RodPlaneContact",
+    "RodPlaneContactWithAnisotropicFriction",
+    "RodRodContact",
+    "RodSelfContact",
+    "RodSphereContact",
+    "SelfContact",
+    "SlenderBodyTheory",
+    "Sphere",
+    "SphericalJoint",
+    "State",
+    "UniformForces",
+    "UniformTorques",
+    "Wave",
+    "advance",
+    "at_rest",
+    "build_model",
+    "compute_link",
+    "compute_twist",
+    "compute_writhe",
+    "extend_stepper_interface",
+    "integrate",
+    "make_control",
+    "make_state",
+    "stable_time_step",
 ]  # fmt: skip

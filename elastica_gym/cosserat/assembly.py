@@ -165,10 +165,12 @@ def _rod_contact(contact: Contact | None, counts: np.ndarray, first: np.ndarray,
     for rod, (start, n) in enumerate(zip(first, counts, strict=True)):
         rod_of[start : start + n + 1] = rod
     if contact is None:
-        return RodContact(is_on=False, stiffness=0.0, damping=0.0, friction=0.0, slip_damping=0.0, rod_of=rod_of)
+        return RodContact(is_on=False, stiffness=0.0, damping=0.0, friction=0.0, slip_damping=0.0, rod_of=rod_of,
+                          may_touch=np.zeros((0, 0), dtype=np.bool_))  # fmt: skip
     return RodContact(
         is_on=True, stiffness=float(contact.stiffness), damping=float(contact.damping),
         friction=float(contact.friction), slip_damping=float(contact.slip_damping), rod_of=rod_of,
+        may_touch=np.ones((counts.size, counts.size), dtype=np.bool_),
     )  # fmt: skip
 
 

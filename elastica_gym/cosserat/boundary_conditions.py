@@ -253,7 +253,7 @@ class OneEndFixedRod(OneEndFixedBC):
 def _selector(name: str, value: ArrayLike | None) -> NDArray[np.bool_]:
     chosen = np.ones(3, dtype=bool) if value is None else np.array(value)
     if chosen.shape != (3,) or chosen.dtype != bool:
-        raise ValueError(f"{name} must be three booleans, not {value}")
+        raise ValueError(f"{name} must be three booleans, not {value!r}")
     return chosen
 
 

@@ -129,7 +129,7 @@ class ExportCallBack(CallBackBaseClass):
         unfinished = path.with_name(path.name + ".part")
         with unfinished.open("wb") as file:
             if self.method == "npz":
-                np.savez(file, **data)
+                np.savez(file, **data)  # type: ignore[arg-type]
             else:
                 pickle.dump(data, file)
         unfinished.replace(path)

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from . import surroundings
 from .interaction import SURFACE_TOLERANCE, _triple
 from .lowering import SceneBuilder
+from .rigidbody import Cylinder, Sphere
 from .rod.rod_base import RodBase
 from .surface.plane import Plane
 
@@ -25,6 +26,9 @@ class NoContact:
     def apply_contact(self, system_one: Any, system_two: Any, time: float = 0.0) -> None:
         """Add forces and torques."""
 
+    def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
+        """Write no rows."""
+
     def require_systems(self, system_one: Any, system_two: Any) -> None:
         """Raise TypeError unless these can touch in this way."""
         for which, system, allowed in (("first", system_one, self.allowed_systems_one),
@@ -35,17 +39,149 @@ class NoContact:
                                 f"not a {type(system).__name__}")  # fmt: skip
 
 
-class _RodOnPlane(NoContact):
-    """What answers to the net force, and so exists in the compiled step alone."""
+class _Compiled(NoContact):
+    """Contact that exists in the compiled step alone."""
+
+    def apply_contact(self, system_one: Any, system_two: Any, time: float = 0.0) -> None:
+        """Refuse: there is no other implementation than the compiled one."""
+        raise NotImplementedError(
+            f"{type(self).__name__} acts inside the compiled step; it cannot be called by a subclass"
+        )
+
+
+class _Press(_Compiled):
+    """Contact with a spring and a damper along the normal.
+
+    Parameters
+    ----------
+    k : float
+        Restoring force per overlap [N/m].
+    nu : float
+        Damping force per velocity of approach [N s/m].
+    """
+
+    def __init__(self, k: float, nu: float) -> None:
+        self.k, self.nu = float(k), float(nu)
+
+
+class RodRodContact(_Press):
+    """Two rods that touch. Half of the force on an element goes to each of its nodes; it never pulls.
+
+    Parameters
+    ----------
+    k : float
+        Restoring force per overlap [N/m].
+    nu : float
+        Damping force per velocity of approach [N s/m].
+    """
+
+    allowed_systems_one = allowed_systems_two = (RodBase,)
+
+    def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
+        """Write a pair."""
+        if system_one is system_two:
+            raise ValueError("RodRodContact is between two rods; a rod touches itself by RodSelfContact")
+        builder.add_rod_contact(system_one, system_two, stiffness=self.k, damping=self.nu)
+
+
+class RodSelfContact(_Press):
+    """A rod that touches itself, where two elements are more than 0.4 of a turn of its surface apart along it.
+
+    Parameters
+    ----------
+    k : float
+        Restoring force per overlap [N/m].
+    nu : float
+        Damping force per velocity of approach [N s/m].
+    """
+
+    allowed_systems_one = allowed_systems_two = (RodBase,)
+
+    def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
+        """Write a pair."""
+        if system_one is not system_two:
+            raise ValueError("RodSelfContact is of a rod with itself; give it twice, or use RodRodContact")
+        builder.add_rod_contact(system_one, system_one, stiffness=self.k, damping=self.nu)
+
+
+class _RodOnBody(_Compiled):
+    """A rod that touches a rigid body.
+
+    Parameters
+    ----------
+    k : float
+        Restoring force per overlap [N/m].
+    nu : float
+        Damping force per velocity of approach [N s/m].
+    velocity_damping_coefficient : float
+        Force of friction per slip, below the Coulomb bound [N s/m].
+    friction_coefficient : float
+        mu
+    """
+
+    allowed_systems_one = (RodBase,)
+
+    def __init__(
+        self, k: float, nu: float, velocity_damping_coefficient: float = 0.0, friction_coefficient: float = 0.0
+    ) -> None:
+        self.k, self.nu = float(k), float(nu)
+        self.velocity_damping_coefficient = float(velocity_damping_coefficient)
+        self.friction_coefficient = float(friction_coefficient)
+
+    def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
+        """Write a pair."""
+        builder.add_body_contact(
+            system_one, system_two, stiffness=self.k, damping=self.nu, friction=self.friction_coefficient,
+            slip_damping=self.velocity_damping_coefficient,
+        )  # fmt: skip
+
+
+class RodCylinderContact(_RodOnBody):
+    """A rod and a cylinder, which is a capsule to it, with Coulomb friction. It never pulls."""
+
+    allowed_systems_two = (Cylinder,)
+
+
+class RodSphereContact(_RodOnBody):
+    """A rod and a sphere, with Coulomb friction. It never pulls."""
+
+    allowed_systems_two = (Sphere,)
+
+
+class CylinderPlaneContact(_Press):
+    """A cylinder on a plane, which touches it at the rims of its flat ends. It never pulls.
+
+    Parameters
+    ----------
+    k : float
+        Restoring force per penetration at each point of contact [N/m].
+    nu : float
+        Damping force per velocity along the normal at each point of contact [N s/m].
+    friction_coefficient : float
+        mu
+    """
+
+    allowed_systems_one = (Cylinder,)
+    allowed_systems_two = (Plane,)
+
+    def __init__(self, k: float, nu: float, friction_coefficient: float = 0.0) -> None:
+        super().__init__(k, nu)
+        self.friction_coefficient = float(friction_coefficient)
+
+    def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
+        """Write a plane."""
+        mu = self.friction_coefficient
+        builder.add_body_plane(system_one, surroundings.Plane(
+            origin=_triple(system_two.origin), normal=_triple(system_two.normal), stiffness=self.k, damping=self.nu,
+            kinetic_friction=(mu, mu, mu),
+        ))  # fmt: skip
+
+
+class _RodOnPlane(_Compiled):
+    """A rod on a plane, which answers to the net force on it."""
 
     allowed_systems_one = (RodBase,)
     allowed_systems_two = (Plane,)
-
-    def apply_contact(self, system_one: Any, system_two: Any, time: float = 0.0) -> None:
-        """Refuse: a plane answers to the net force, which is not known before all other loads are."""
-        raise NotImplementedError(
-            f"{type(self).__name__} acts after all other loads, inside the step; it cannot be called by a subclass"
-        )
 
     def _friction(self) -> dict[str, Any]:
         return {}

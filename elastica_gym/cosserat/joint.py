@@ -6,9 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .contact_forces import NoContact, RodCylinderContact, RodRodContact, RodSelfContact, RodSphereContact
 from .external_forces import _vector
 from .lowering import SceneBuilder
 from .model import Array
+from .rigidbody import Sphere
+from .rod.rod_base import RodBase
 
 End = tuple[Any, int, Any, int]
 
@@ -139,6 +142,64 @@ class FixedJoint(FreeJoint):
         """Write a joint."""
         builder.add_joint(ends, stiffness=self.k, damping=self.nu, turn_stiffness=self.kt, turn_damping=self.nut,
                           rest_rotation=self.rest_rotation_matrix)  # fmt: skip
+
+
+class _ContactAsJoint(FreeJoint):
+    """Contact under the names of 0.2.x, declared by ``connect`` without indices."""
+
+    contact: NoContact
+
+    def apply_forces(
+        self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
+    ) -> None:
+        """Refuse: there is no other implementation than the compiled one."""
+        self.contact.apply_contact(system_one, system_two, time)
+
+    def lower(self, builder: SceneBuilder, ends: End) -> None:
+        """Write a pair."""
+        one, _, two, _ = ends
+        self.contact.require_systems(one, two)
+        self.contact.lower(builder, one, two)
+
+
+class ExternalContact(_ContactAsJoint):
+    """Contact of a rod with another or with a rigid body: `RodRodContact`, `RodCylinderContact`, `RodSphereContact`.
+
+    Parameters
+    ----------
+    k, nu, velocity_damping_coefficient, friction_coefficient : float
+        As for `RodCylinderContact`; between rods there is no friction.
+    """
+
+    def __init__(
+        self, k: float, nu: float, velocity_damping_coefficient: float = 0.0, friction_coefficient: float = 0.0
+    ) -> None:
+        super().__init__(k, nu)
+        self._friction = (velocity_damping_coefficient, friction_coefficient)
+
+    def lower(self, builder: SceneBuilder, ends: End) -> None:
+        """Write a pair."""
+        two = ends[2]
+        if isinstance(two, RodBase):
+            self.contact: NoContact = RodRodContact(self.k, self.nu)
+        else:
+            kind = RodSphereContact if isinstance(two, Sphere) else RodCylinderContact
+            self.contact = kind(self.k, self.nu, *self._friction)
+        super().lower(builder, ends)
+
+
+class SelfContact(_ContactAsJoint):
+    """Contact of a rod with itself: `RodSelfContact`.
+
+    Parameters
+    ----------
+    k, nu : float
+        As for `RodSelfContact`.
+    """
+
+    def __init__(self, k: float, nu: float) -> None:
+        super().__init__(k, nu)
+        self.contact = RodSelfContact(k, nu)
 
 
 def get_relative_rotation_two_systems(system_one: Any, index_one: int, system_two: Any, index_two: int) -> Array:

@@ -13,7 +13,20 @@ from numpy.typing import ArrayLike
 from .assembly import plane_table
 from .kernels.simulate import DENSE, SPARSE, UNLOADED
 from .model import Array, Index, Model, Waves, aligned_zeros
-from .scene import Clamps, DeadLoads, Decay, Drag, Filters, Flows, Joints, Pins, PointLoads, Scene
+from .scene import (
+    BodyContacts,
+    Clamps,
+    DeadLoads,
+    Decay,
+    Drag,
+    Filters,
+    Flows,
+    Joints,
+    Pins,
+    PointLoads,
+    RodContacts,
+    Scene,
+)
 from .surroundings import Plane, net_couple
 
 ALWAYS = -np.inf
@@ -54,6 +67,11 @@ class SceneBuilder:
         self._flows: list[tuple[_Span, float]] = []
         self._drag_force, self._drag_torque = aligned_zeros((self._slots,)), aligned_zeros((self._slots,))
         self._joints: list[tuple] = []
+        self._number = {id(rod): number for number, rod in enumerate(rods)}
+        self._rods = list(rods)
+        self._rod_contacts: dict[tuple[float, float], set[tuple[int, int]]] = {}
+        self._body_contacts: list[tuple] = []
+        self._body_planes: list[tuple[Plane, int]] = []
         self._planes: list[tuple[Plane, _Span]] = []
         self._pins: list[tuple] = []
         self._clamps: list[tuple] = []
@@ -173,6 +191,25 @@ class SceneBuilder:
         self._clamps.append((self.element(system, index), start_time, np.ravel(omega), np.array(axes, dtype=float),
                              float(directors is not None), held))  # fmt: skip
 
+    # contact
+
+    def add_body_contact(
+        self, rod: Any, body: Any, *, stiffness: float, damping: float, friction: float = 0.0, slip_damping: float = 0.0
+    ) -> None:
+        """Let a rod and a rigid body touch; `BodyContacts` says what the arguments mean."""
+        where = self.elements(rod)
+        row = (_Span(where.start, where.stop), self._body[id(body)], stiffness, damping, friction, slip_damping)
+        self._body_contacts.append(row)
+
+    def add_rod_contact(self, one: Any, two: Any, *, stiffness: float, damping: float) -> None:
+        """Let two rods touch, or one itself; `RodContacts` says what the arguments mean."""
+        i, j = self._number[id(one)], self._number[id(two)]
+        self._rod_contacts.setdefault((float(stiffness), float(damping)), set()).add((min(i, j), max(i, j)))
+
+    def add_body_plane(self, body: Any, plane: Plane) -> None:
+        """Let a rigid body touch a plane."""
+        self._body_planes.append((plane, self._body[id(body)]))
+
     # dampers
 
     def add_decay(
@@ -193,7 +230,8 @@ class SceneBuilder:
     @property
     def loading(self) -> int:
         """Where anything acts from outside, but planes: UNLOADED, SPARSE or DENSE."""
-        if self._waves or self._flows or self._dead_force.any() or self._dead_torque.any():
+        rows = (self._waves, self._flows, self._rod_contacts, self._body_contacts)
+        if any(map(len, rows)) or self._dead_force.any() or self._dead_torque.any():
             return DENSE
         is_loaded = self._point_loads or self._joints or self._body_force.any() or self._body_torque.any()
         return SPARSE if is_loaded else UNLOADED
@@ -217,8 +255,12 @@ class SceneBuilder:
                         np.array([mu for _, mu in self._flows], dtype=np.float64)),
             drag=Drag(bool(self._drag_force.any() or self._drag_torque.any()), self._drag_force, self._drag_torque),
             joints=_table(Joints, self._joints, "i2", "i2", "", "", "", "3", "", "", "33"),
+            rod_contacts=self._rod_contact_table(),
+            body_contacts=_table(BodyContacts, self._body_contacts, "i2", "i", "", "", "", ""),
             planes=plane_table([plane for plane, _ in self._planes]),
             plane_span=_spans([span for _, span in self._planes]),
+            body_planes=plane_table([plane for plane, _ in self._body_planes]),
+            grounded=np.array([body for _, body in self._body_planes], dtype=np.int64),
             pins=_table(Pins, self._pins, "i", "", "3", "3", "3"),
             clamps=_table(Clamps, self._clamps, "i", "", "3", "3", "", "33"),
             decay=Decay(bool(self._node_rate.any() or self._element_rate.any()), bool(self._dilating_rate.any()),
@@ -226,6 +268,28 @@ class SceneBuilder:
                         aligned_zeros((self._slots,))),
             filters=Filters(_spans([span for span, _ in self._filters]),
                             np.array([order for _, order in self._filters], dtype=np.int64)),
+        )  # fmt: skip
+
+    def _rod_contact_table(self) -> RodContacts:
+        rod_of = aligned_zeros((self._slots,), np.int64)
+        for number, rod in enumerate(self._rods):
+            rod_of[self.nodes(rod)] = number
+        groups = list(self._rod_contacts.items())
+        may_touch = np.zeros((len(groups), len(self._rods), len(self._rods)), dtype=np.bool_)
+        order: list[int] = []
+        spans = []
+        for group, (_, pairs) in enumerate(groups):
+            start = len(order)
+            for i, j in pairs:
+                may_touch[group, i, j] = may_touch[group, j, i] = True
+            for number in sorted({each for pair in pairs for each in pair}):
+                where = self.elements(self._rods[number])
+                order.extend(range(where.start, where.stop))
+            spans.append((start, len(order)))
+        return RodContacts(
+            stiffness=np.array([k for (k, _), _ in groups], dtype=np.float64),
+            damping=np.array([nu for (_, nu), _ in groups], dtype=np.float64), rod_of=rod_of, may_touch=may_touch,
+            span=_spans(spans), order=np.array(order, dtype=np.int64),
         )  # fmt: skip
 
     def _stacked(self, rows: Any) -> Array:

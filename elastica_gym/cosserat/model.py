@@ -102,6 +102,8 @@ class RodContact(NamedTuple):
     """Force of friction per slip below the Coulomb bound c [N s/m]"""
     rod_of: Index
     """The rod that a slot belongs to, (L,) int64"""
+    may_touch: NDArray[np.bool_]
+    """Whether two rods touch each other, and on the diagonal themselves, (R, R) bool"""
 
 
 class Model(NamedTuple):

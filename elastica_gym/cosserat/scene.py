@@ -8,6 +8,9 @@ element of a rod, or -1 - b for rigid body b.
 
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .model import Array, Index, Planes, Waves
 
 
@@ -90,6 +93,40 @@ class Joints(NamedTuple):
     """C with Q1 = C Q2 at rest, (C, 3, 3)"""
 
 
+class BodyContacts(NamedTuple):
+    """The P pairs of a rod and a rigid body that may touch."""
+
+    span: Index
+    """Slots of the rod's elements, (P, 2) int64"""
+    body: Index
+    """Number of the body, (P,) int64"""
+    stiffness: Array
+    """Restoring force per overlap k [N/m], (P,)"""
+    damping: Array
+    """Damping force per velocity of approach nu [N s/m], (P,)"""
+    friction: Array
+    """Coefficient of Coulomb friction mu, (P,)"""
+    slip_damping: Array
+    """Force of friction per slip below the Coulomb bound c [N s/m], (P,)"""
+
+
+class RodContacts(NamedTuple):
+    """The G groups of rods that touch in the same way."""
+
+    stiffness: Array
+    """Restoring force per overlap k [N/m], (G,)"""
+    damping: Array
+    """Damping force per velocity of approach nu [N s/m], (G,)"""
+    rod_of: Index
+    """The rod that a slot belongs to, (L,) int64"""
+    may_touch: NDArray[np.bool_]
+    """Whether two rods touch each other, and on the diagonal themselves, (G, R, R) bool"""
+    span: Index
+    """Which part of ``order`` is a group's, (G, 2) int64"""
+    order: Index
+    """Slots of the elements in the order of a sweep: any order will do, the right one is the fastest; (E,) int64"""
+
+
 class Pins(NamedTuple):
     """The N nodes and bodies whose motion is prescribed."""
 
@@ -163,9 +200,14 @@ class Scene(NamedTuple):
     flows: Flows
     drag: Drag
     joints: Joints
+    rod_contacts: RodContacts
+    body_contacts: BodyContacts
     planes: Planes
     plane_span: Index
     """Slots of the nodes that a plane acts on, (P, 2) int64"""
+    body_planes: Planes
+    grounded: Index
+    """Number of the body that each of ``body_planes`` acts on, (Q,) int64"""
     pins: Pins
     clamps: Clamps
     decay: Decay

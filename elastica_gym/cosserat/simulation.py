@@ -13,12 +13,14 @@ from .kernels.simulate import DENSE, simulate
 from .lowering import SceneBuilder, is_built_in
 from .model import Array
 from .modules.declaration import Declaration
-from .rod.cosserat_rod import MATERIAL
-from .rod.description import stable_time_step
-from .rod.rod_base import RodBase
+from .rigidbody.rigid_body import RigidBodyBase
+from .rod.cosserat_rod import MATERIAL, CosseratRod
+from .rod.description import Continuum, Rod, stable_time_step
 from .scene import Hooks, Scheme
 
 NEVER = 2**62
+_BYSTANDER = Rod.straight(2, start=(1e6, 0.0, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=1.0,
+                          radius=0.1, density=1.0, youngs_modulus=1.0, shear_modulus=1.0)  # fmt: skip
 INTERVALS = ("every", "step_skip", "sample_every")
 """Attributes of a callback that say how many steps are from one call to the next"""
 
@@ -71,18 +73,22 @@ class Simulation:
     """
 
     def __init__(self, systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]]) -> None:
-        self.rods = [system for system in systems if isinstance(system, RodBase)]
-        lowered = [rod._lowered() for rod in self.rods]
-        self.model = build_model(lowered)
-        self.state, self.control = at_rest(self.model, lowered)
+        self.rods = [system for system in systems if isinstance(system, CosseratRod)]
+        self.bodies = [system for system in systems if isinstance(system, RigidBodyBase)]
+        # a Model has a rod: bodies alone get one that is far from everything and feels nothing
+        lowered: list[Continuum] = [rod._lowered() for rod in self.rods] or [_BYSTANDER]
+        bodies: Any = [body._lowered() for body in self.bodies]
+        self.model = build_model(lowered, cylinders=bodies)
+        self.state, self.control = at_rest(self.model, lowered, cylinders=bodies)
         self._material = self._move_rods()
+        self._move_bodies()
         self._as_laid_out = self._material.copy()
         self._hooks = {name: Hook() for name in Hooks._fields}
         self._callbacks: list[tuple[Any, Any, int]] = []
         self._constraints: list[tuple[Any, Any]] = []
         self._has_warned = False
 
-        builder = SceneBuilder(self.model, self.rods)
+        builder = SceneBuilder(self.model, self.rods, self.bodies)
         self._add_constraints(declared.get("constraints", ()), builder)
         self._add_loads(declared.get("forcing", ()), builder)
         self._add_joints(declared.get("connections", ()), builder)
@@ -101,7 +107,7 @@ class Simulation:
         material = np.zeros(sum(rod._fields[name].size for rod in self.rods for name in MATERIAL))
         used = 0
         s, c = self.state, self.control
-        for rod, first in zip(self.rods, self.model.first_slot, strict=True):
+        for rod, first in zip(self.rods, self.model.first_slot, strict=bool(self.rods)):
             nodes, elements = slice(first, first + rod.n_nodes), slice(first, first + rod.n_elems)
             voronoi = slice(first, first + rod.rest_kappa.shape[1])
             memory = {
@@ -117,6 +123,16 @@ class Simulation:
                 used += values.size
             rod._move(memory)
         return material
+
+    def _move_bodies(self) -> None:
+        """Let the bodies' attributes be views of the simulation's memory."""
+        s = self.state
+        for b, body in enumerate(self.bodies):
+            body._move({
+                "position_collection": s.body_x[0, b, :, None], "velocity_collection": s.body_v[0, b, :, None],
+                "director_collection": s.body_Q[0, b, :, :, None], "omega_collection": s.body_w[0, b, :, None],
+                "external_forces": s.body_force[0, b, :, None], "external_torques": s.body_torque[0, b, :, None],
+            })  # fmt: skip
 
     def _add_constraints(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
         for declaration in declared:
@@ -142,7 +158,8 @@ class Simulation:
         for declaration in declared:
             joint, (one, two), (first, second) = declaration.make(), declaration.systems, declaration.indices
             if is_built_in(joint, "apply_forces", "apply_torques"):
-                for i, j in zip(np.ravel(first), np.ravel(second), strict=True):
+                # contact as a joint, as in 0.2.x, has no indices
+                for i, j in zip(np.ravel(first), np.ravel(second), strict=True) if np.size(first) else ((0, 0),):
                     joint.lower(builder, (one, int(i), two, int(j)))
             else:
                 self._hook("loads", joint.apply_forces, one, first, two, second)
@@ -244,7 +261,7 @@ class Simulation:
         if self._has_warned:
             return
         self._has_warned = True
-        bound = min(stable_time_step(rod._lowered()) for rod in self.rods)
+        bound = min((stable_time_step(rod._lowered()) for rod in self.rods), default=math.inf)
         if dt > bound:
             warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the stable one of a rod at rest",
                           RuntimeWarning, stacklevel=4)  # fmt: skip

@@ -35,44 +35,56 @@ SWEEPS = 30
 def rods_on_cylinders(
     n, x, v, Q, w, length, radius, cylinders, body_x, body_v, body_Q, body_w, force, torque, body_force, body_torque,
 ):  # fmt: skip
-    """Add the forces between rod elements and cylinders where they overlap, action and reaction.
+    """Add the forces between all rods and all cylinders where they overlap."""
+    c = cylinders
+    for b in range(c.mass.size):
+        rod_on_cylinder(
+            FIRST, n, x, v, Q, w, length, radius, c.length[b], c.radius[b], c.rod_stiffness[b], c.rod_damping[b],
+            c.rod_friction[b], c.rod_slip_damping[b], body_x[b], body_v[b], body_Q[b], body_w[b], force, torque,
+            body_force[b], body_torque[b],
+        )  # fmt: skip
+
+
+@inner
+def rod_on_cylinder(
+    first, last, x, v, Q, w, length, radius, length2, r2, stiffness, damping, friction, slip_damping, body_x, body_v,
+    body_Q, body_w, force, torque, body_force, body_torque,
+):  # fmt: skip
+    """Add the forces between elements from slot first to last - 1 and a cylinder, action and reaction.
 
     Half of the force on an element goes to each of its nodes, and its slip is that of their mean
     velocity. Both slips include the spin of the surface, and both bodies get the torque of the
     force about where it is: the element about its axis, the cylinder about its centre.
     """
-    c = cylinders
-    for b in range(c.mass.size):
-        centre, axis, r2 = vector(body_x[b]), vector(body_Q[b, 2]), c.radius[b]
-        start, edge = plus(centre, -0.5 * c.length[b], axis), times(c.length[b], axis)
-        velocity, spin = vector(body_v[b]), to_lab(body_Q[b], vector(body_w[b]))
-        for k in range(FIRST, n):
-            r1, j = radius[k], k + ONE
-            first, last = column(x, k), column(x, j)
-            # what is further from the cylinder's middle than half of both lengths and both radii touches nothing
-            between = plus(times(0.5, plus(first, 1.0, last)), -1.0, centre)
-            reach = 0.5 * (length[k] + c.length[b]) + r1 + r2
-            # (a ghost has no section)
-            if dot(between, between) < reach * reach and r1 > 0.0:
-                e = plus(last, -1.0, first)
-                p, q = closest(first, e, start, edge)
-                on_axis = plus(start, q, edge)
-                towards = plus(on_axis, -1.0, plus(first, p, e))
-                d = norm(towards)
-                # axes that cross have no direction to part in
-                if r1 + r2 > d and d * d > TINY:
-                    normal = times(1.0 / d, towards)
-                    arm1, arm2 = times(r1, normal), plus(plus(on_axis, -r2, normal), -1.0, centre)
-                    u = times(0.5, plus(column(v, k), 1.0, column(v, j)))
-                    u = plus(u, 1.0, cross(to_lab_at(Q, k, column(w, k)), arm1))
-                    u = plus(u, -1.0, plus(velocity, 1.0, cross(spin, arm2)))
-                    f = press(r1 + r2 - d, normal, u, c.rod_stiffness[b], c.rod_damping[b], c.rod_friction[b],
-                              c.rod_slip_damping[b])  # fmt: skip
-                    add_column(force, k, -0.5, f)
-                    add_column(force, j, -0.5, f)
-                    add_column(torque, k, -1.0, to_material_at(Q, k, cross(arm1, f)))
-                    add(body_force[b], 1.0, f)
-                    add(body_torque[b], 1.0, to_material(body_Q[b], cross(arm2, f)))
+    centre, axis = vector(body_x), vector(body_Q[2])
+    start, edge = plus(centre, -0.5 * length2, axis), times(length2, axis)
+    velocity, spin = vector(body_v), to_lab(body_Q, vector(body_w))
+    for k in range(first, last):
+        r1, j = radius[k], k + ONE
+        here, there = column(x, k), column(x, j)
+        # what is further from the cylinder's middle than half of both lengths and both radii touches nothing
+        between = plus(times(0.5, plus(here, 1.0, there)), -1.0, centre)
+        reach = 0.5 * (length[k] + length2) + r1 + r2
+        # (a ghost has no section)
+        if dot(between, between) < reach * reach and r1 > 0.0:
+            e = plus(there, -1.0, here)
+            p, q = closest(here, e, start, edge)
+            on_axis = plus(start, q, edge)
+            towards = plus(on_axis, -1.0, plus(here, p, e))
+            d = norm(towards)
+            # axes that cross have no direction to part in
+            if r1 + r2 > d and d * d > TINY:
+                normal = times(1.0 / d, towards)
+                arm1, arm2 = times(r1, normal), plus(plus(on_axis, -r2, normal), -1.0, centre)
+                u = times(0.5, plus(column(v, k), 1.0, column(v, j)))
+                u = plus(u, 1.0, cross(to_lab_at(Q, k, column(w, k)), arm1))
+                u = plus(u, -1.0, plus(velocity, 1.0, cross(spin, arm2)))
+                f = press(r1 + r2 - d, normal, u, stiffness, damping, friction, slip_damping)
+                add_column(force, k, -0.5, f)
+                add_column(force, j, -0.5, f)
+                add_column(torque, k, -1.0, to_material_at(Q, k, cross(arm1, f)))
+                add(body_force, 1.0, f)
+                add(body_torque, 1.0, to_material(body_Q, cross(arm2, f)))
 
 
 @inner
@@ -103,36 +115,45 @@ def turned(Q, J, a):
 
 @apart
 def cylinders_on_planes(dt, cylinders, planes, x, v, directors, w, contact, force, torque):
-    """Add the response of the planes and Coulomb friction at the rims' points of contact.
+    """Add what all planes do to all cylinders. Comes after every other load."""
+    c, p = cylinders, planes
+    for b in range(c.mass.size):
+        for j in range(p.stiffness.size):
+            cylinder_on_plane(
+                dt, vector(p.normal[j]), vector(p.origin[j]), c.ground_stiffness[b], c.ground_damping[b],
+                c.ground_friction[b], c.length[b], c.radius[b], c.mass[b], c.inertia[b], x[b], v[b], directors[b], w[b],
+                contact[b], force[b], torque[b],
+            )  # fmt: skip
+
+
+@inner
+def cylinder_on_plane(
+    dt, n, origin, stiffness, damping, friction, length, radius, mass, J, x, v, Q, w, contact, force, torque,
+):  # fmt: skip
+    """Add the response of a plane and Coulomb friction at the points of contact of a cylinder's rims.
 
     The response is k times the depth and nu times the approach of each point, never adhesive. Friction
     is what brings the slip to zero by the end of the step, as far as mu N allows, so a cylinder rests
     on a slope without creeping; found by passes over the points, each with what the others do
-    (projected Gauss-Seidel). Comes after every other load.
+    (projected Gauss-Seidel).
     """
-    c, p = cylinders, planes
-    for b in range(c.mass.size):
-        Q, J, length, radius = directors[b], c.inertia[b], c.length[b], c.radius[b]
-        velocity, spin = vector(v[b]), to_lab(Q, vector(w[b]))
-        for j in range(p.stiffness.size):
-            n = vector(p.normal[j])
-            height = dot(plus(vector(x[b]), -1.0, vector(p.origin[j])), n)
-            touching = False
-            for number in range(POINTS):
-                arm = rim(Q, length, radius, n, number)
-                depth = -height - dot(arm, n)
-                N = c.ground_stiffness[b] * depth - c.ground_damping[b] * dot(plus(velocity, 1.0, cross(spin, arm)), n)
-                N = N if N > 0.0 and depth > 0.0 else 0.0
-                touching = touching or N > 0.0
-                contact[b, number, 0] = N
-                for a in range(1, 4):
-                    contact[b, number, a] = 0.0
-                add(force[b], N, n)
-                add(torque[b], N, to_material(Q, cross(arm, n)))
-            # (a step of no duration stops nothing)
-            if touching and c.ground_friction[b] > 0.0 and dt > 0.0:
-                rub(contact[b], c.ground_friction[b], n, Q, length, radius, c.mass[b], J, velocity, vector(w[b]),
-                    force[b], torque[b], dt)  # fmt: skip
+    velocity, spin = vector(v), to_lab(Q, vector(w))
+    height = dot(plus(vector(x), -1.0, origin), n)
+    touching = False
+    for number in range(POINTS):
+        arm = rim(Q, length, radius, n, number)
+        depth = -height - dot(arm, n)
+        N = stiffness * depth - damping * dot(plus(velocity, 1.0, cross(spin, arm)), n)
+        N = N if N > 0.0 and depth > 0.0 else 0.0
+        touching = touching or N > 0.0
+        contact[number, 0] = N
+        for a in range(1, 4):
+            contact[number, a] = 0.0
+        add(force, N, n)
+        add(torque, N, to_material(Q, cross(arm, n)))
+    # (a step of no duration stops nothing)
+    if touching and friction > 0.0 and dt > 0.0:
+        rub(contact, friction, n, Q, length, radius, mass, J, velocity, vector(w), force, torque, dt)
 
 
 @inner

@@ -64,8 +64,9 @@ def rods_on_rods(contact, order, begin, end, x, v, Q, w, length, radius, force, 
             if not begin[k] <= end[j]:
                 break
             low, high = (j, k) if j < k else (k, j)
+            one, two = contact.rod_of[low], contact.rod_of[high]
             near = high - low - 1 < NEAR * pi * radius[high] / length[high]
-            if not (near and contact.rod_of[low] == contact.rod_of[high]):
+            if contact.may_touch[one, two] and not (near and one == two):
                 meet(contact, low, high, x, v, Q, w, length, radius, force, torque)
 
 

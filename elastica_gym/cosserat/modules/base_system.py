@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..rigidbody.rigid_body import RigidBodyBase
 from ..rod.cosserat_rod import CosseratRod
-from ..rod.rod_base import RodBase
 from ..surface.plane import Plane
 from .declaration import Declaration
 
@@ -31,7 +31,7 @@ class BaseSystemCollection(MutableSequence):
     """
 
     def __init__(self) -> None:
-        self.allowed_sys_types: tuple[type, ...] = (CosseratRod, Plane)
+        self.allowed_sys_types: tuple[type, ...] = (CosseratRod, RigidBodyBase, Plane)
         self._systems: list[Any] = []
         self._declared: dict[str, list[Declaration]] = {}
         self._simulation: Simulation | None = None
@@ -133,8 +133,8 @@ class BaseSystemCollection(MutableSequence):
         from ..simulation import Simulation
 
         self._require_open("finalize again")
-        if not any(isinstance(system, RodBase) for system in self._systems):
-            raise RuntimeError("there is nothing to simulate: append a rod before finalize")
+        if not any(isinstance(system, CosseratRod | RigidBodyBase) for system in self._systems):
+            raise RuntimeError("there is nothing to simulate: append a rod or a rigid body before finalize")
         self._simulation = Simulation(self._systems, self._declared)
         self._simulation.begin()
 

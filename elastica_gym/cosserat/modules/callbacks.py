@@ -25,6 +25,7 @@ class CallBacks(_Collection):
         """
         if system is Ellipsis:
             system = tuple(self.systems())
+        observed: Any
         if isinstance(system, Mapping):
             each, observed = tuple(system.values()), dict(system)
         elif isinstance(system, list | tuple):

@@ -106,23 +106,23 @@ class CosseratRod(RodBase):
 
     REQUISITE_MODULES: ClassVar[list[type]] = []
 
-    position_collection = Field()  # type: ignore[assignment]
-    velocity_collection = Field()  # type: ignore[assignment]
-    director_collection = Field()  # type: ignore[assignment]
-    omega_collection = Field()  # type: ignore[assignment]
-    rest_sigma = Field()  # type: ignore[assignment]
-    rest_kappa = Field()  # type: ignore[assignment]
+    position_collection = Field()
+    velocity_collection = Field()
+    director_collection = Field()
+    omega_collection = Field()
+    rest_sigma = Field()
+    rest_kappa = Field()
     external_forces = Field()
     external_torques = Field()
-    rest_lengths = Field()  # type: ignore[assignment]
-    rest_voronoi_lengths = Field()  # type: ignore[assignment]
+    rest_lengths = Field()
+    rest_voronoi_lengths = Field()
     density = Field()
     volume = Field()
-    mass = Field()  # type: ignore[assignment]
-    mass_second_moment_of_inertia = Field()  # type: ignore[assignment]
+    mass = Field()
+    mass_second_moment_of_inertia = Field()
     inv_mass_second_moment_of_inertia = Field()
-    shear_matrix = Field()  # type: ignore[assignment]
-    bend_matrix = Field()  # type: ignore[assignment]
+    shear_matrix = Field()
+    bend_matrix = Field()
     dissipation_constant_for_forces = Field()
     dissipation_constant_for_torques = Field()
 
