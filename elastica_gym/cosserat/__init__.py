@@ -5,6 +5,15 @@ Two ways lead to the same compiled step. The environments describe rods and surr
 a class of `BaseSystemCollection` and its features, rods, loads, constraints, ``finalize`` and `integrate`.
 """
 
+from ._calculus import (
+    difference_kernel,
+    difference_kernel_for_block_structure,
+    position_average,
+    position_difference_kernel,
+    quadrature_kernel,
+    quadrature_kernel_for_block_structure,
+)
+from ._linalg import levi_civita_tensor
 from .assembly import at_rest, build_model
 from .boundary_conditions import (
     ConstraintBase,
@@ -51,6 +60,7 @@ from .joint import (
 from .kernels.step import advance
 from .model import Control, Model, State, make_control, make_state
 from .modules import BaseSystemCollection, CallBacks, Connections, Constraints, Contact, Damping, Forcing
+from .restart import load_state, save_state
 from .rigidbody import Cylinder, RigidBodyBase, Sphere
 from .rod import Rod, stable_time_step
 from .rod.cosserat_rod import CosseratRod
@@ -60,6 +70,8 @@ from .surface import Plane
 from .surroundings import Wave
 from .timestepper import extend_stepper_interface, integrate
 from .timestepper.symplectic_steppers import PEFRL, PositionVerlet
+from .transformations import inv_skew_symmetrize, rotate
+from .utils import isqrt
 
 __all__ = [
     "PEFRL",
@@ -130,9 +142,21 @@ __all__ = [
     "compute_link",
     "compute_twist",
     "compute_writhe",
+    "difference_kernel",
+    "difference_kernel_for_block_structure",
     "extend_stepper_interface",
     "integrate",
+    "inv_skew_symmetrize",
+    "isqrt",
+    "levi_civita_tensor",
+    "load_state",
     "make_control",
     "make_state",
+    "position_average",
+    "position_difference_kernel",
+    "quadrature_kernel",
+    "quadrature_kernel_for_block_structure",
+    "rotate",
+    "save_state",
     "stable_time_step",
 ]  # fmt: skip

@@ -100,7 +100,7 @@ def lay_out(fields: Mapping[str, Array], rod: Continuum, start: int) -> None:
     share = np.full((2, n), 0.5)
     share[0, 0] = share[1, -1] = 1.0
     for name, where, value in (
-        ("mass", nodes, m), ("inv_mass", nodes, 1.0 / m), ("damping_rate", nodes, rod.damping_rate),
+        ("mass", nodes, m), ("inv_mass", nodes, rod.inv_nodal_mass), ("damping_rate", nodes, rod.damping_rate),
         ("rest_length", elements, rod.rest_length), ("inv_rest_length", elements, 1.0 / rod.rest_length),
         ("volume_root", elements, rod.radius * np.sqrt(rod.rest_length)),
         ("shear", elements, rod.shear_stiffness), ("inertia", elements, rod.inertia),

@@ -24,6 +24,7 @@ from .scene import (
     Joints,
     Pins,
     PointLoads,
+    Rings,
     RodContacts,
     Scene,
 )
@@ -151,6 +152,7 @@ class SceneBuilder:
 
     def add_plane(self, system: Any, plane: Plane) -> None:
         """Let a system touch a plane."""
+        _require_open(system, "plane")
         where = self.nodes(system)
         span = _Span(where.start, where.stop)
         # rods that follow each other on the same plane are one row
@@ -197,12 +199,15 @@ class SceneBuilder:
         self, rod: Any, body: Any, *, stiffness: float, damping: float, friction: float = 0.0, slip_damping: float = 0.0
     ) -> None:
         """Let a rod and a rigid body touch; `BodyContacts` says what the arguments mean."""
+        _require_open(rod, "rigid body")
         where = self.elements(rod)
         row = (_Span(where.start, where.stop), self._body[id(body)], stiffness, damping, friction, slip_damping)
         self._body_contacts.append(row)
 
     def add_rod_contact(self, one: Any, two: Any, *, stiffness: float, damping: float) -> None:
         """Let two rods touch, or one itself; `RodContacts` says what the arguments mean."""
+        _require_open(one, "rod")
+        _require_open(two, "rod")
         i, j = self._number[id(one)], self._number[id(two)]
         self._rod_contacts.setdefault((float(stiffness), float(damping)), set()).add((min(i, j), max(i, j)))
 
@@ -242,7 +247,9 @@ class SceneBuilder:
         keys = np.array([key for key, _ in waves]).reshape(len(waves), 5)
         spans = [(min(s.first for s in each), max(s.last for s in each)) for _, (_, _, each) in waves]
         places = [row[0] for row in self._point_loads] + [place for row in self._joints for place in (*row[0], *row[1])]
+        rings = [(self._first[id(rod)], rod.n_elems) for rod in self._rods if rod.ring_rod_flag]
         return Scene(
+            rings=_table(Rings, rings, "i", "i"),
             touched=np.unique(np.array([place for place in places if place >= 0], dtype=np.int64)),
             point_loads=_table(PointLoads, self._point_loads, "i", "", "3", "3", "3", "3", ""),
             dead_loads=DeadLoads(bool(self._dead_force.any()), bool(self._dead_torque.any()), self._dead_force,
@@ -298,6 +305,11 @@ class SceneBuilder:
         for target, row in zip(table, chosen, strict=True):
             target[:] = row
         return table
+
+
+def _require_open(rod: Any, what: str) -> None:
+    if rod.ring_rod_flag:
+        raise NotImplementedError(f"contact of a ring with a {what} is not supported")
 
 
 def _index(what: str, index: int, count: int) -> int:

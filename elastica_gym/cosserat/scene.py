@@ -187,9 +187,19 @@ class Filters(NamedTuple):
     """How often the Laplacian is taken, (F,) int64"""
 
 
+class Rings(NamedTuple):
+    """The R closed rods, each an open one whose last element is the image of its first."""
+
+    first: Index
+    """Slot of the first node, (R,) int64"""
+    n_elements: Index
+    """Number of elements n without the image, (R,) int64"""
+
+
 class Scene(NamedTuple):
     """All features of a simulation that are not in its Model."""
 
+    rings: Rings
     touched: Index
     """Slots of the rods that point loads and joints act on, (T,) int64"""
     point_loads: PointLoads

@@ -14,7 +14,7 @@ from .lowering import SceneBuilder, is_built_in
 from .model import Array
 from .modules.declaration import Declaration
 from .rigidbody.rigid_body import RigidBodyBase
-from .rod.cosserat_rod import MATERIAL, CosseratRod
+from .rod.cosserat_rod import MATERIAL, CosseratRod, Lowered
 from .rod.description import Continuum, Rod, stable_time_step
 from .scene import Hooks, Scheme
 
@@ -76,7 +76,7 @@ class Simulation:
         self.rods = [system for system in systems if isinstance(system, CosseratRod)]
         self.bodies = [system for system in systems if isinstance(system, RigidBodyBase)]
         # a Model has a rod: bodies alone get one that is far from everything and feels nothing
-        lowered: list[Continuum] = [rod._lowered() for rod in self.rods] or [_BYSTANDER]
+        lowered: list[Continuum] = [_laid(rod) for rod in self.rods] or [_BYSTANDER]
         bodies: Any = [body._lowered() for body in self.bodies]
         self.model = build_model(lowered, cylinders=bodies)
         self.state, self.control = at_rest(self.model, lowered, cylinders=bodies)
@@ -228,7 +228,7 @@ class Simulation:
         self._require_time_step(dt)
         if not np.array_equal(self._material, self._as_laid_out):
             for rod, first in zip(self.rods, self.model.first_slot, strict=True):
-                lay_out(self.model._asdict(), rod._lowered(), int(first))
+                lay_out(self.model._asdict(), _laid(rod), int(first))
             self._as_laid_out[:] = self._material
         self.state.time[0] = time
         hooks = Hooks(**{name: hook.address for name, hook in self._hooks.items()})
@@ -261,10 +261,15 @@ class Simulation:
         if self._has_warned:
             return
         self._has_warned = True
-        bound = min((stable_time_step(rod._lowered()) for rod in self.rods), default=math.inf)
+        bound = min((stable_time_step(rod) for rod in self.rods), default=math.inf)
         if dt > bound:
             warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the stable one of a rod at rest",
                           RuntimeWarning, stacklevel=4)  # fmt: skip
+
+
+def _laid(rod: CosseratRod) -> Lowered:
+    """Return a rod as the slots hold it."""
+    return rod._lowered().closed() if rod.ring_rod_flag else rod._lowered()
 
 
 def _make_constraint(declaration: Declaration, system: Any) -> Any:

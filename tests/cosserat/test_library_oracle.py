@@ -252,7 +252,7 @@ def tumbling(lib, sim):
         sim.append(system)
     sim.add_forcing_to(body).using(lib.GravityForces, np.array([0.1, -9.8, 2.0]))
     sim.add_forcing_to(body).using(lib.UniformTorques, 0.02, X)
-    sim.add_forcing_to(ball).using(lib.EndpointForces, 0.3 * Y, np.zeros(3))
+    sim.add_forcing_to(ball).using(lib.EndpointForces, 0.3 * Y, np.zeros(3), ramp_up_time=1e-3)
     sim.add_forcing_to(body).using(lib.EndpointForces, 0.02 * X, np.zeros(3), ramp_up_time=0.002)
     return [body, ball, rod]
 
@@ -317,3 +317,22 @@ def test_planes(scene):
     change = np.abs(a.velocity_collection).max()
     assert np.abs(a.velocity_collection - b.velocity_collection).max() < 1e-11 * change
     assert np.abs(a.omega_collection - b.omega_collection).max() < 1e-11 * np.abs(a.omega_collection).max()
+
+
+# rings
+
+
+def ring(lib, sim):
+    rod = lib.CosseratRod.ring_rod(
+        16, np.array([0.1, 0.0, 0.0]), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e5, shear_modulus=4e4
+    )
+    rod.rest_kappa[1] = 1.0
+    sim.append(rod)
+    sim.add_forcing_to(rod).using(lib.GravityForces, np.array([0.1, -9.8, 2.0]))
+    sim.add_forcing_to(rod).using(lib.UniformTorques, 1e-3, X)
+    sim.constrain(rod).using(lib.FixedConstraint, constrained_position_idx=(3,))
+    return [rod]
+
+
+def test_ring():
+    test_trajectory(ring)

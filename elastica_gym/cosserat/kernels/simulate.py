@@ -19,6 +19,7 @@ from .hooks import call
 from .joints import join
 from .kinematics import orthonormalise
 from .loads import clear, clear_at, dead_force, dead_torque, external, external_at, viscosity, wave
+from .rings import follow, hand_back
 from .rods import rods_on_rods
 from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows, settle, work
 from .vectors import add, plus, times, to_material, vector
@@ -260,6 +261,8 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
                 return 1
             if stage == n_kicks:
                 break
+            if scene.rings.first.size > 0:
+                follow(scene.rings, state.x[0], state.v[0], state.Q[0], state.w[0])
             internal(model, state, control, 0, n, dt)
             if loading != UNLOADED:
                 if step + stage > 0:
@@ -268,6 +271,8 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
                     return 1
                 add_loads(scene, state, control, n, loading)
             resistance(model, scene, state, n)
+            if scene.rings.first.size > 0:
+                hand_back(scene.rings, state.force[0], state.torque[0])
             if scene.planes.stiffness.size > 0:
                 ground(model, scene, state)
             if scene.grounded.size > 0:

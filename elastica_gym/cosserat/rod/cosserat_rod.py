@@ -1,6 +1,6 @@
 """The documented rod: a Cosserat rod with its attributes as arrays, in PyElastica's names."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -53,11 +53,39 @@ class Lowered:
     shear_stiffness: Array
     bend_stiffness: Array
     nodal_mass: Array
+    inv_nodal_mass: Array
     inertia: Array
     inv_inertia: Array
     viscosity: Array
     torque_viscosity: Array
     damping_rate: float = 0.0
+
+    def closed(self) -> "Lowered":
+        """Return an open rod that a ring can be computed as, with its first element again at the end.
+
+        That *image* has no stiffness, inertia or mass, so it moves nothing and does not move; what it is
+        pushed with belongs to the first element.
+        """
+        def again(values: Array, n: int = 1) -> Array:
+            return np.concatenate([values, values[..., :n]], axis=-1)
+
+        def nothing(values: Array, n: int = 1) -> Array:
+            return np.concatenate([values, np.zeros_like(values[..., :n])], axis=-1)
+
+        return Lowered(
+            n_elements=self.n_elements + 1, position=again(self.position, 2), directors=again(self.directors),
+            radius=again(self.radius), rest_kappa=self.rest_kappa, rest_sigma=again(self.rest_sigma),
+            rest_length=again(self.rest_length), rest_voronoi_length=self.rest_voronoi_length,
+            shear_stiffness=nothing(self.shear_stiffness), bend_stiffness=self.bend_stiffness,
+            nodal_mass=again(self.nodal_mass, 2), inv_nodal_mass=nothing(self.inv_nodal_mass, 2),
+            inertia=nothing(self.inertia), inv_inertia=nothing(self.inv_inertia), viscosity=nothing(self.viscosity),
+            torque_viscosity=nothing(self.torque_viscosity),
+        )  # fmt: skip
+
+    def opened(self) -> "Lowered":
+        """Return a ring cut open, as `stable_time_step` can judge it."""
+        return replace(self, bend_stiffness=self.bend_stiffness[:, :-1],
+                       nodal_mass=np.append(self.nodal_mass, self.nodal_mass[0]))  # fmt: skip
 
 
 class CosseratRod(RodBase):
@@ -354,6 +382,10 @@ class CosseratRod(RodBase):
 
     # between the rod and its simulation
 
+    def as_continuum(self) -> Lowered:
+        """Return the rod as the physics knows it, a ring cut open."""
+        return self._lowered().opened() if self.ring_rod_flag else self._lowered()
+
     def _lowered(self) -> Lowered:
         """Return what a Model needs to know.
 
@@ -370,6 +402,7 @@ class CosseratRod(RodBase):
             rest_sigma=self.rest_sigma, rest_length=self.rest_lengths, rest_voronoi_length=self.rest_voronoi_lengths,
             shear_stiffness=_diagonal_of("shear_matrix", self.shear_matrix),
             bend_stiffness=_diagonal_of("bend_matrix", self.bend_matrix), nodal_mass=self.mass,
+            inv_nodal_mass=1.0 / self.mass,
             inertia=_diagonal_of("mass_second_moment_of_inertia", self.mass_second_moment_of_inertia),
             inv_inertia=_diagonal_of("inv_mass_second_moment_of_inertia", self.inv_mass_second_moment_of_inertia),
             viscosity=self.dissipation_constant_for_forces, torque_viscosity=self.dissipation_constant_for_torques,

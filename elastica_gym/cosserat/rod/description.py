@@ -39,6 +39,8 @@ class Continuum(Protocol):
     @property
     def nodal_mass(self) -> Array: ...  # noqa: D102
     @property
+    def inv_nodal_mass(self) -> Array: ...  # noqa: D102
+    @property
     def inertia(self) -> Array: ...  # noqa: D102
     @property
     def inv_inertia(self) -> Array: ...  # noqa: D102
@@ -223,6 +225,11 @@ class Rod:
         return np.append(half, 0.0) + np.insert(half, 0, 0.0)
 
     @property
+    def inv_nodal_mass(self) -> Array:
+        """One over it [1/kg], (n + 1,)."""
+        return 1.0 / self.nodal_mass
+
+    @property
     def inertia(self) -> Array:
         """Diagonal of J [kg m^2], (3, n)."""
         return self.density * self.rest_length * self.second_moment
@@ -233,14 +240,26 @@ class Rod:
         return 1.0 / self.inertia
 
 
-def stable_time_step(rod: Continuum) -> float:
+class Convertible(Protocol):
+    """A rod of other names that can be described as a `Continuum`."""
+
+    def as_continuum(self) -> Continuum: ...  # noqa: D102
+
+
+def stable_time_step(rod: Continuum | Convertible) -> float:
     """Return the largest time step of position Verlet that is stable for a rod at rest [s].
 
     The highest frequency of a uniform rod is that of its shortest wave, in which neighbouring nodes
     and elements move oppositely: stretch, twist, and bending coupled to shear. Measured for r/l from
     0.1 to 8 and G/Y from 0.33 to 3.3: stable at 0.98 of it and unstable at 1.02. For a rod that is
     not uniform, each element counts with the stiffer of its neighbours.
+
+    Parameters
+    ----------
+    rod : Rod or CosseratRod
     """
+    if hasattr(rod, "as_continuum"):
+        rod = rod.as_continuum()
     l, S, J = rod.rest_length, rod.shear_stiffness, rod.inertia / rod.rest_length  # noqa: E741
     B = np.maximum(*(np.insert(rod.bend_stiffness, end, 0.0, axis=1) for end in (0, l.size - 1)))
     m = _mass_per_length(rod.nodal_mass, l)
