@@ -5,7 +5,7 @@ from case import Result, show
 
 from elastica_gym.cosserat import compute_link, compute_twist, compute_writhe
 
-NODES = 401
+NODES = 161
 TURNS = 4
 
 

@@ -32,7 +32,7 @@ def speed(angle: float) -> float:
     simulator.add_forcing_to(rod).using(UniformForces, FORCE, np.array([1.0, 0.0, 0.0]))
     simulator.add_forcing_to(rod).using(SlenderBodyTheory, VISCOSITY)
     simulator.finalize()
-    integrate(PositionVerlet(), simulator, 2.0, 8_000, progress_bar=False)
+    integrate(PositionVerlet(), simulator, 2.0, 20_000, progress_bar=False)
     return float(rod.compute_velocity_center_of_mass()[0])
 
 

@@ -19,9 +19,10 @@ from .hooks import call
 from .joints import join
 from .kinematics import orthonormalise
 from .loads import clear, clear_at, dead_force, dead_torque, external, external_at, viscosity, wave
+from .plane import slide, slip, stick, to_nodes, touch
 from .rings import follow, hand_back
 from .rods import rods_on_rods
-from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows, settle, work
+from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows
 from .vectors import add, plus, times, to_material, vector
 
 # where there are loads from outside: nowhere, in a few slots, everywhere
@@ -43,9 +44,8 @@ def tails(a, k):
 @inner
 def work_tail(a, k):
     """Return the rows of scratch from slot k on."""
-    w = work(a)
-    return (w[0][k:], w[1][k:], w[2][k:], w[3][k:], w[4][k:], w[5][k:], w[6][k:], w[7][k:],
-            w[8][k:], w[9][k:], w[10][k:], w[11][k:], w[12][k:], w[13][k:], w[14][k:], w[15][k:])  # fmt: skip
+    return (a[0][k:], a[1][k:], a[2][k:], a[3][k:], a[4][k:], a[5][k:], a[6][k:], a[7][k:],
+            a[8][k:], a[9][k:], a[10][k:], a[11][k:], a[12][k:], a[13][k:], a[14][k:], a[15][k:])  # fmt: skip
 
 
 @inner
@@ -193,6 +193,30 @@ def resistance(model, scene, state, n):
         viscosity(n, v, w, s.length[0], (model.viscosity[0], model.viscosity[1]), force, torque)
     if scene.drag.is_on:
         drag(n, v, w, scene.drag.force, scene.drag.torque, force, torque)
+
+
+@inner
+def settle(planes, j, n, x, v, Q, w, radius, share, weight, work, force, torque, normal_force):
+    """Add the response and friction of plane j to the slots that rows are cut to, as `step.ground` does to all.
+
+    ``work`` are 16 rows to write on.
+    """
+    p, normal = planes, planes.normal[j]
+    push, axial, axial_material = (work[0], work[1], work[2]), (work[3], work[4], work[5]), (work[6], work[7], work[8])
+    hold, hold_rolling, response, carried, slip_axial, slip_rolling, damping = work[9:]
+
+    touch(n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, radius, share,
+          force, response, damping, carried, axial)  # fmt: skip
+    slip(n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response)
+    n_sticking = slide(
+        n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j], slip_axial, slip_rolling,
+        response, carried, radius, axial, axial_material, push, hold, hold_rolling, torque, normal_force,
+    )  # fmt: skip
+    to_nodes(n, push, force)
+    if n_sticking > 0:
+        stick(n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
+              push, torque)  # fmt: skip
+        to_nodes(n, push, force)
 
 
 @apart

@@ -33,12 +33,6 @@ def matrix(a):
 
 
 @inner
-def work(a):
-    """Return the rows of an environment's scratch."""
-    return (a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], a[15])
-
-
-@inner
 def drift(model, state, i, n, h):
     """Move environment i by a time h at its present velocities."""
     kinematics(n, h, rows(state.x[i]), rows(state.v[i]), matrix(state.Q[i]), rows(state.w[i]))
@@ -97,38 +91,34 @@ def contacts(model, state, i, n):
 
 
 @inner
-def settle(planes, j, n, x, v, Q, w, radius, share, weight, work, force, torque, normal_force):
-    """Add the response and friction of plane j; ``work`` are 16 rows to write on."""
-    p, normal = planes, planes.normal[j]
-    push, axial, axial_material = (work[0], work[1], work[2]), (work[3], work[4], work[5]), (work[6], work[7], work[8])
-    hold, hold_rolling, response, carried, slip_axial, slip_rolling, damping = work[9:]
-
-    touch(n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, radius, share,
-          force, response, damping, carried, axial)  # fmt: skip
-    slip(n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response)
-    n_sticking = slide(
-        n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j], slip_axial, slip_rolling,
-        response, carried, radius, axial, axial_material, push, hold, hold_rolling, torque, normal_force,
-    )  # fmt: skip
-    to_nodes(n, push, force)
-    if n_sticking > 0:
-        stick(n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
-              push, torque)  # fmt: skip
-        to_nodes(n, push, force)
-
-
-@inner
 def ground(model, state, i, n, dt):
     """Add the response and friction of the planes to environment i, which answer to all other loads."""
-    m, s = model, state
+    m, s, p = model, state, model.planes
+    x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
+    force, torque, radius = rows(s.force[i]), rows(s.torque[i]), s.radius[i]
+    push, axial, axial_material = rows(s.scratch[i]), rows(s.scratch[i, 3:]), rows(s.scratch[i, 6:])
+    hold, hold_rolling, response, carried = s.scratch[i, 9], s.scratch[i, 10], s.scratch[i, 11], s.scratch[i, 12]
+    slip_axial, slip_rolling, damping = s.scratch[i, 13], s.scratch[i, 14], s.scratch[i, 15]
+    share, weight = (m.share[0], m.share[1]), (m.weight[0], m.weight[1])
+
     s.normal_force[i, :] = 0.0
-    for j in range(m.planes.stiffness.size):
-        settle(m.planes, j, n, rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i]), s.radius[i],
-               (m.share[0], m.share[1]), (m.weight[0], m.weight[1]), work(s.scratch[i]), rows(s.force[i]),
-               rows(s.torque[i]), s.normal_force[i])  # fmt: skip
+    for j in range(p.stiffness.size):
+        normal = p.normal[j]
+        touch(n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, radius, share,
+              force, response, damping, carried, axial)  # fmt: skip
+        slip(n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response)
+        n_sticking = slide(
+            n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j], slip_axial, slip_rolling,
+            response, carried, radius, axial, axial_material, push, hold, hold_rolling, torque, s.normal_force[i],
+        )  # fmt: skip
+        to_nodes(n, push, force)
+        if n_sticking > 0:
+            stick(n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
+                  push, torque)  # fmt: skip
+            to_nodes(n, push, force)
     if m.cylinders.mass.size > 0:
-        cylinders_on_planes(dt, m.cylinders, m.planes, s.body_x[i], s.body_v[i], s.body_Q[i], s.body_w[i],
-                            s.body_contact[i], s.body_force[i], s.body_torque[i])  # fmt: skip
+        cylinders_on_planes(dt, m.cylinders, p, s.body_x[i], s.body_v[i], s.body_Q[i], s.body_w[i], s.body_contact[i],
+                            s.body_force[i], s.body_torque[i])  # fmt: skip
 
 
 @inner
