@@ -63,6 +63,15 @@ Where all three levels act, bending reaches 5.5 mN m, enough to play the publish
 most of the body. What lifts and twists is weaker: enough to shift weight from one part of the body to another, not to
 throw it off the ground. With all equally strong, exploration is mostly thrashing, and learning takes twice as long."""
 
+OCTOPUS = Muscles(
+    magnitudes={"normal": (5.2, 4.16, 3.12), "binormal": (5.2, 4.16, 3.12), "tangent": (3.12, 2.08, 1.04)},
+    widths={"normal": (0.40, 0.16, 0.10), "binormal": (0.40, 0.16, 0.10), "tangent": (0.30, 0.24, 0.20)},
+    arms=((50.0 / 120.0, 0.0), (70.0 / 120.0, 1.0)),
+    activation_time=0.06,
+)
+"""The octopus's: its arms begin at the head. The widths of the 2020 hackathon, and 0.52 of its couples: then all of
+one direction of bending curl an arm by 1.2 turns. More would close its bends so far that their inside vanishes."""
+
 
 def basis(s: Array, widths: tuple[float, float, float]) -> Array:
     """Return the seven Gaussians of an arm, exp(-((s - c)/width)^2), (7, m).

@@ -1,17 +1,18 @@
 """What every animal has: rods in surroundings, muscles, and senses."""
 
+import functools
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from ..cosserat import Model, Rod
+from ..cosserat import Model, Rod, State, advance, at_rest
 from ..cosserat.kernels.compiler import entry, inline
+from ..cosserat.kernels.contact import overlap
+from ..cosserat.kernels.vectors import column, plus, times, to_lab, vector
 from ..cosserat.model import Array, Index
+from ..cosserat.surroundings import Cylinder
 from ..muscles import Muscles
-
-FASTEST = 10.0
-"""Speed of a node above which a simulation has diverged [m/s]: no muscle moves one half as fast"""
 
 
 class Senses(NamedTuple):
@@ -29,12 +30,16 @@ class Senses(NamedTuple):
     """First and last node of the part that the heading points from, (2,) int64"""
     head: int
     """The node that reaches for targets"""
+    crown: int
+    """The element whose normal points up while the animal is upright"""
     length: float
     """Body length, the unit of lengths [m]"""
     curvature_scale: float
     """Unit of curvature [1/m]"""
     weight: float
     """Weight of the body: with the patches' share of it, the unit of contact [N]"""
+    fastest: float
+    """Speed above which a simulation has diverged, of nodes and objects [m/s]"""
 
 
 # compared by identity: its functions cache what they derive from it
@@ -47,6 +52,8 @@ class Body:
     name : str
     rods : tuple of Rod
         Its rods where they were described.
+    cylinders : tuple of Cylinder
+        The free objects around it.
     model : Model
     muscles : Muscles
     arms : tuple of str
@@ -56,33 +63,48 @@ class Body:
     senses : Senses
     sim_dt : float
         Time step of the physics unless another is asked for [s].
+    settling : float
+        Time in which the body as described comes to rest on the ground [s].
     """
 
     name: str
     rods: tuple[Rod, ...]
+    cylinders: tuple[Cylinder, ...] = ()
     model: Model
     muscles: Muscles
     arms: tuple[str, str]
     couples: Array
     senses: Senses
     sim_dt: float
+    settling: float = 0.0
 
-    @property
-    def n_readings(self) -> int:
-        """How many numbers `feel` writes for one environment."""
-        s = self.senses
-        return 6 * s.nodes.size + 5 * s.joints.size + s.skin.size - 1
+    @functools.cached_property
+    def rest(self) -> State:
+        """State of one such animal at rest on the ground; not to be changed."""
+        state, control = at_rest(self.model, self.rods, cylinders=self.cylinders)
+        advance(self.model, state, control, 0, 1, self.sim_dt, round(self.settling / self.sim_dt))
+        for moving in (state.v, state.w, state.body_v, state.body_w, state.time, state.step):
+            moving[:] = 0
+        return state
 
-    def reading_names(self) -> tuple[str, ...]:
-        """Return the name of each number that `feel` writes."""
+    def readings(self) -> list[tuple[str, float, float]]:
+        """Return the name and the least and largest value of each number that `feel` writes."""
         s, axes = self.senses, ("forward", "up", "right")
-        return (
-            *(f"position/{p}/{axis}" for p in range(s.nodes.size) for axis in axes),
-            *(f"velocity/{p}/{axis}" for p in range(s.nodes.size) for axis in axes),
-            *(f"curvature/{j}/{axis}" for j in range(s.joints.size) for axis in ("normal", "binormal", "twist")),
-            *(f"roll/{j}/{axis}" for j in range(s.joints.size) for axis in ("normal", "binormal")),
-            *(f"contact/{c}" for c in range(s.skin.size - 1)),
-        )
+        nodes, joints, patches = range(s.nodes.size), range(s.joints.size), range(s.skin.size - 1)
+        layout = [(f"position/{p}/{axis}", -1.0, 1.0) for p in nodes for axis in axes]
+        layout += [(f"velocity/{p}/{axis}", -20.0, 20.0) for p in nodes for axis in axes]
+        layout += [(f"curvature/{j}/{axis}", -10.0, 10.0) for j in joints for axis in ("normal", "binormal", "twist")]
+        layout += [(f"roll/{j}/{axis}", -1.0, 1.0) for j in joints for axis in ("normal", "binormal")]
+        layout += [(f"contact/{c}", 0.0, 50.0) for c in patches]
+        if self.cylinders:
+            layout += [(f"touch/{c}", 0.0, 50.0) for c in patches]
+        for b in range(len(self.cylinders)):
+            layout += [(f"object/{b}/position/{axis}", -4.0, 4.0) for axis in axes]
+            layout += [(f"object/{b}/axis/{axis}", -1.0, 1.0) for axis in axes]
+            layout += [(f"object/{b}/velocity/{axis}", -20.0, 20.0) for axis in axes]
+            layout += [(f"object/{b}/spin/{axis}", -50.0, 50.0) for axis in axes]
+            layout += [(f"object/{b}/gap", -1.0, 4.0)]
+        return layout
 
 
 class Pose(NamedTuple):
@@ -96,18 +118,27 @@ class Pose(NamedTuple):
     """Horizontal unit vector from the rear to the front part, as (x, z), (B, 2)"""
     head: Array
     """Position of the head [m], (B, 3)"""
+    upright: Array
+    """Up component of the crown's normal, (B,)"""
+    objects: Array
+    """Centres of mass of the free objects [m], (B, C, 3)"""
+    gaps: Array
+    """Least distance of each object's surface from the animal's, negative where they overlap [m], (B, C)"""
     sound: Index
-    """1 where all is finite and below `FASTEST`, else 0, (B,) int64"""
+    """1 where all is finite and below the senses' ``fastest``, else 0, (B,) int64"""
 
     def only(self, envs: slice) -> "Pose":
         """Return views of some environments."""
-        return Pose(self.centre[envs], self.velocity[envs], self.heading[envs], self.head[envs], self.sound[envs])
+        return Pose._make(field[envs] for field in self)
 
 
-def make_pose(n_envs: int) -> Pose:
+def make_pose(n_envs: int, n_objects: int) -> Pose:
     """Allocate a Pose."""
-    return Pose(np.zeros((n_envs, 3)), np.zeros((n_envs, 3)), np.zeros((n_envs, 2)), np.zeros((n_envs, 3)),
-                np.ones(n_envs, dtype=np.int64))  # fmt: skip
+    return Pose(
+        centre=np.zeros((n_envs, 3)), velocity=np.zeros((n_envs, 3)), heading=np.zeros((n_envs, 2)),
+        head=np.zeros((n_envs, 3)), upright=np.zeros(n_envs), objects=np.zeros((n_envs, n_objects, 3)),
+        gaps=np.zeros((n_envs, n_objects)), sound=np.ones(n_envs, dtype=np.int64),
+    )  # fmt: skip
 
 
 @entry
@@ -130,6 +161,38 @@ def _mean(row, ends):
     return total / (ends[1] + 1 - ends[0])
 
 
+@inline
+def _write(row, at, scale, hx, hz, a):
+    """Write the forward, up and right component of a vector, scaled."""
+    row[at] = scale * (a[0] * hx + a[2] * hz)
+    row[at + 1] = scale * a[1]
+    row[at + 2] = scale * (a[2] * hx - a[0] * hz)
+
+
+@inline
+def _gap(x, radius, slots, centre, axis, length, thickness):
+    """Return the least distance between the surfaces of elements and of a cylinder."""
+    start, edge = plus(centre, -0.5 * length, axis), times(length, axis)
+    least = 1e9
+    for k in range(slots):
+        # (a ghost has no section)
+        if radius[k] > 0.0:
+            first = column(x, k)
+            depth, _, _ = overlap(first, plus(column(x, k + 1), -1.0, first), radius[k], start, edge, thickness)
+            least = -depth if -depth < least else least
+    return least
+
+
+@inline
+def _patches(row, at, force, skin, scale):
+    """Write the sum of a force over the elements of each patch of skin, scaled."""
+    for s in range(skin.size - 1):
+        total = 0.0
+        for k in range(skin[s], skin[s + 1]):
+            total += force[k]
+        row[at + s] = scale * total
+
+
 @entry
 def feel(model, state, senses, pose, readings):
     """Compute the pose and the readings (B, R) of every environment, in the frame of its heading.
@@ -137,8 +200,11 @@ def feel(model, state, senses, pose, readings):
     Readings, with the heading's forward, up and right axes: positions of nodes from the centre of
     mass in body lengths, their velocities in body lengths a second, curvature and twist in
     ``curvature_scale``, the up component of normal and binormal there, and the force with which the ground
-    carries each patch of skin, over the weight of an equal share of the body. In a loop over environments
-    rather than in NumPy, whose sums may round differently with the size of the batch.
+    carries each patch of skin, over the weight of an equal share of the body. Where there are objects, the
+    force with which they touch each patch, likewise; and of each its centre from the head in body lengths,
+    axis, velocity in body lengths a second, angular velocity in rad/s, and the gap to the animal's surface
+    in body lengths. In a loop over environments rather than in NumPy, whose sums may round differently with
+    the size of the batch.
     """
     n_nodes, n_joints, n_skin = senses.nodes.size, senses.joints.size, senses.skin.size - 1
     inv_length = 1.0 / senses.length
@@ -155,11 +221,15 @@ def feel(model, state, senses, pose, readings):
                 pose.centre[i, c] += m * x[c, k]
                 pose.velocity[i, c] += m * v[c, k]
                 # false for what is not a number, too
-                sound = sound and abs(v[c, k]) < FASTEST and abs(x[c, k]) < 1e6 and abs(state.w[i, c, k]) < 1e9
+                sound = sound and abs(v[c, k]) < senses.fastest and abs(x[c, k]) < 1e6 and abs(state.w[i, c, k]) < 1e9
+        for b in range(model.cylinders.mass.size):
+            for c in range(3):
+                sound = sound and abs(state.body_v[i, b, c]) < senses.fastest and abs(state.body_w[i, b, c]) < 1e9
         for c in range(3):
             pose.centre[i, c] /= total
             pose.velocity[i, c] /= total
             pose.head[i, c] = x[c, senses.head]
+        pose.upright[i] = state.Q[i, 0, 1, senses.crown]
         pose.sound[i] = 1 if sound else 0
 
         hx = _mean(x[0], senses.front) - _mean(x[0], senses.rear)
@@ -169,15 +239,11 @@ def feel(model, state, senses, pose, readings):
         pose.heading[i, 0], pose.heading[i, 1] = hx, hz
 
         row, at = readings[i], 0
+        centre = vector(pose.centre[i])
         for p in range(n_nodes):
             k = senses.nodes[p]
-            dx, dz = x[0, k] - pose.centre[i, 0], x[2, k] - pose.centre[i, 2]
-            row[at] = (dx * hx + dz * hz) * inv_length
-            row[at + 1] = (x[1, k] - pose.centre[i, 1]) * inv_length
-            row[at + 2] = (dz * hx - dx * hz) * inv_length
-            row[at + 3 * n_nodes] = (v[0, k] * hx + v[2, k] * hz) * inv_length
-            row[at + 3 * n_nodes + 1] = v[1, k] * inv_length
-            row[at + 3 * n_nodes + 2] = (v[2, k] * hx - v[0, k] * hz) * inv_length
+            _write(row, at, inv_length, hx, hz, plus(column(x, k), -1.0, centre))
+            _write(row, at + 3 * n_nodes, inv_length, hx, hz, column(v, k))
             at += 3
         at = 6 * n_nodes
         for j in range(n_joints):
@@ -188,9 +254,21 @@ def feel(model, state, senses, pose, readings):
             for c in range(2):
                 row[at] = state.Q[i, c, 1, senses.joints[j]]
                 at += 1
-        for s in range(n_skin):
-            carried = 0.0
-            for k in range(senses.skin[s], senses.skin[s + 1]):
-                carried += state.normal_force[i, k]
-            row[at] = carried * n_skin / senses.weight
-            at += 1
+        _patches(row, at, state.normal_force[i], senses.skin, n_skin / senses.weight)
+        at += n_skin
+        bodies = model.cylinders
+        if bodies.mass.size > 0:
+            _patches(row, at, state.body_touch[i], senses.skin, n_skin / senses.weight)
+            at += n_skin
+        for b in range(bodies.mass.size):
+            place, axis = vector(state.body_x[i, b]), vector(state.body_Q[i, b, 2])
+            gap = _gap(x, state.radius[i], model.mass.size - 1, place, axis, bodies.length[b], bodies.radius[b])
+            for c in range(3):
+                pose.objects[i, b, c] = place[c]
+            pose.gaps[i, b] = gap
+            _write(row, at, inv_length, hx, hz, plus(place, -1.0, vector(pose.head[i])))
+            _write(row, at + 3, 1.0, hx, hz, axis)
+            _write(row, at + 6, inv_length, hx, hz, vector(state.body_v[i, b]))
+            _write(row, at + 9, 1.0, hx, hz, to_lab(state.body_Q[i, b], vector(state.body_w[i, b])))
+            row[at + 12] = gap * inv_length
+            at += 13

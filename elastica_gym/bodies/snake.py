@@ -81,6 +81,6 @@ def _senses(start: int, n: int, weight: float) -> Senses:
 
     return Senses(
         nodes=spread(0, n, 9), joints=spread(2, n - 4, 10), skin=spread(0, n, 9),
-        front=np.array([start + half, start + n]), rear=np.array([start, start + half]), head=start + n,
-        length=LENGTH, curvature_scale=10.0, weight=weight,
+        front=np.array([start + half, start + n]), rear=np.array([start, start + half]),
+        head=start + n, crown=start + n - 1, length=LENGTH, curvature_scale=10.0, weight=weight, fastest=10.0,
     )  # fmt: skip

@@ -9,9 +9,11 @@ from numpy.typing import ArrayLike
 from .model import (
     BLOCK,
     LEAD,
+    NEAR,
     Array,
     Control,
     Cylinders,
+    Index,
     Model,
     Planes,
     RodContact,
@@ -83,7 +85,7 @@ def build_model(
         gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_viscous=bool(fields["viscosity"].any()),
         is_balanced=is_balanced, activation_time=float(activation_time), planes=plane_table(planes),
         waves=_wave_table(waves, rods, first, slots), cylinders=_cylinder_table(cylinders),
-        rod_contact=_rod_contact(rod_contact, counts, first, slots),
+        rod_contact=_rod_contact(rod_contact, rods, first, slots),
     )  # fmt: skip
 
 
@@ -160,18 +162,28 @@ def _cylinder_table(cylinders: Sequence[Cylinder]) -> Cylinders:
     )  # fmt: skip
 
 
-def _rod_contact(contact: Contact | None, counts: np.ndarray, first: np.ndarray, slots: int) -> RodContact:
-    rod_of = aligned_zeros((slots,), np.int64)
-    for rod, (start, n) in enumerate(zip(first, counts, strict=True)):
-        rod_of[start : start + n + 1] = rod
-    if contact is None:
-        return RodContact(is_on=False, stiffness=0.0, damping=0.0, friction=0.0, slip_damping=0.0, rod_of=rod_of,
-                          may_touch=np.zeros((0, 0), dtype=np.bool_))  # fmt: skip
+def _rod_contact(contact: Contact | None, rods: Sequence[Continuum], first: np.ndarray, slots: int) -> RodContact:
+    last_other, last_clear = aligned_zeros((slots,)), aligned_zeros((slots,))
+    for rod, start in zip(rods, first, strict=True):
+        here = slice(start, start + rod.n_elements)
+        last_other[here], last_clear[here] = start - 1, start + _last_clear(rod)
+    law = contact or Contact(stiffness=1.0)
     return RodContact(
-        is_on=True, stiffness=float(contact.stiffness), damping=float(contact.damping),
-        friction=float(contact.friction), slip_damping=float(contact.slip_damping), rod_of=rod_of,
-        may_touch=np.ones((counts.size, counts.size), dtype=np.bool_),
+        is_on=contact is not None, stiffness=float(law.stiffness), damping=float(law.damping),
+        friction=float(law.friction), slip_damping=float(law.slip_damping), last_other=last_other,
+        last_clear=last_clear, stray=0.2 * min(float(rod.radius.min()) for rod in rods),
     )  # fmt: skip
+
+
+def _last_clear(rod: Continuum) -> Index:
+    """Return the last element before each at and before which none is too near to touch it, -1 for none, (n,).
+
+    Too near is what is nearer along the rod than half a turn about the surface of a rod of their mean radius.
+    """
+    s = np.cumsum(rod.rest_length) - 0.5 * rod.rest_length
+    near = s[:, None] - s < NEAR * np.pi * 0.5 * (rod.radius[:, None] + rod.radius)
+    # an element is always near itself
+    return np.argmax(near, axis=1) - 1
 
 
 def at_rest(

@@ -170,11 +170,9 @@ class CylinderPlaneContact(_Press):
 
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write a plane."""
-        mu = self.friction_coefficient
-        builder.add_body_plane(system_one, surroundings.Plane(
-            origin=_triple(system_two.origin), normal=_triple(system_two.normal), stiffness=self.k, damping=self.nu,
-            kinetic_friction=(mu, mu, mu),
-        ))  # fmt: skip
+        plane = surroundings.Plane(origin=_triple(system_two.origin), normal=_triple(system_two.normal),
+                                   stiffness=self.k, damping=self.nu)  # fmt: skip
+        builder.add_body_plane(system_one, plane, self.friction_coefficient)
 
 
 class _RodOnPlane(_Compiled):

@@ -59,7 +59,8 @@ class SceneBuilder:
 
     def __init__(self, model: Model, rods: Sequence[Any], bodies: Sequence[Any] = ()) -> None:
         self._slots = model.mass.size
-        self._first = {id(rod): int(start) for rod, start in zip(rods, model.first_slot, strict=True)}
+        # (bodies alone have a bystander in the model)
+        self._first = {id(rod): int(start) for rod, start in zip(rods, model.first_slot, strict=bool(rods))}
         self._body = {id(body): number for number, body in enumerate(bodies)}
         self._body_force, self._body_torque = np.zeros((len(bodies), 3)), np.zeros((len(bodies), 3))
         self._point_loads: list[tuple] = []
@@ -72,7 +73,7 @@ class SceneBuilder:
         self._rods = list(rods)
         self._rod_contacts: dict[tuple[float, float], set[tuple[int, int]]] = {}
         self._body_contacts: list[tuple] = []
-        self._body_planes: list[tuple[Plane, int]] = []
+        self._body_planes: list[tuple[Plane, int, float]] = []
         self._planes: list[tuple[Plane, _Span]] = []
         self._pins: list[tuple] = []
         self._clamps: list[tuple] = []
@@ -211,9 +212,9 @@ class SceneBuilder:
         i, j = self._number[id(one)], self._number[id(two)]
         self._rod_contacts.setdefault((float(stiffness), float(damping)), set()).add((min(i, j), max(i, j)))
 
-    def add_body_plane(self, body: Any, plane: Plane) -> None:
-        """Let a rigid body touch a plane."""
-        self._body_planes.append((plane, self._body[id(body)]))
+    def add_body_plane(self, body: Any, plane: Plane, friction: float) -> None:
+        """Let a rigid body touch a plane with a coefficient of Coulomb friction."""
+        self._body_planes.append((plane, self._body[id(body)], friction))
 
     # dampers
 
@@ -266,8 +267,9 @@ class SceneBuilder:
             body_contacts=_table(BodyContacts, self._body_contacts, "i2", "i", "", "", "", ""),
             planes=plane_table([plane for plane, _ in self._planes]),
             plane_span=_spans([span for _, span in self._planes]),
-            body_planes=plane_table([plane for plane, _ in self._body_planes]),
-            grounded=np.array([body for _, body in self._body_planes], dtype=np.int64),
+            body_planes=plane_table([plane for plane, _, _ in self._body_planes]),
+            grounded=np.array([body for _, body, _ in self._body_planes], dtype=np.int64),
+            ground_friction=np.array([friction for _, _, friction in self._body_planes], dtype=np.float64),
             pins=_table(Pins, self._pins, "i", "", "3", "3", "3"),
             clamps=_table(Clamps, self._clamps, "i", "", "3", "3", "", "33"),
             decay=Decay(bool(self._node_rate.any() or self._element_rate.any()), bool(self._dilating_rate.any()),

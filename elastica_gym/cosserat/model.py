@@ -19,6 +19,10 @@ from numpy.typing import NDArray
 BLOCK = 8
 LEAD = BLOCK
 SCRATCH = 16
+# pairs of elements that may touch, for each element, for which there is room
+ROOM = 32
+# of half a turn of a rod about its own surface: elements that are nearer than that cannot touch
+NEAR = 0.8
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -100,10 +104,12 @@ class RodContact(NamedTuple):
     """Coefficient of Coulomb friction mu"""
     slip_damping: float
     """Force of friction per slip below the Coulomb bound c [N s/m]"""
-    rod_of: Index
-    """The rod that a slot belongs to, (L,) int64"""
-    may_touch: NDArray[np.bool_]
-    """Whether two rods touch each other, and on the diagonal themselves, (R, R) bool"""
+    stray: float
+    """How far an element may move before pairs that may touch are listed anew [m]"""
+    last_other: Array
+    """The last slot before the rod that a slot belongs to, a whole number, (L,)"""
+    last_clear: Array
+    """The last slot before an element at and before which none is too near to touch it, a whole number, (L,)"""
 
 
 class Model(NamedTuple):
@@ -161,7 +167,7 @@ class Model(NamedTuple):
 
 
 class State(NamedTuple):
-    """What a step changes. The first seven fields and the bodies' motion are the state proper, the rest follows."""
+    """What a step changes. The first seven fields and the bodies' motion and contact are the state proper."""
 
     x: Array
     """Node position [m], lab frame, (B, 3, L)"""
@@ -206,8 +212,20 @@ class State(NamedTuple):
     body_torque: Array
     """Net torque on it about its centre [N m], material frame, (B, C, 3)"""
     body_contact: Array
-    """At each point that may touch a plane, the normal force and the force of friction in the lab, both with the
-    last plane [N], (B, C, 6, 4)"""
+    """At each point that may touch a plane, with the last plane and in the lab: the normal force, the force of
+    friction [N] and the point from the centre [m], (B, C, 6, 7)"""
+    body_touch: Array
+    """Normal force between an element and cylinders, where there are any [N], (B, L)"""
+    rod_touch: Array
+    """Normal force between an element and others, where rods touch [N], (B, L)"""
+    n_pairs: Index
+    """How many pairs of elements may touch until one has strayed too far, -1 if they are not listed, (B,) int64"""
+    pairs: Index
+    """Those pairs, the lower slot times L plus the higher one, sorted, (B, P) int64"""
+    listed_x: Array
+    """Node positions when they were listed [m], (B, 3, L)"""
+    listed_reach: Array
+    """Radii of the balls about elements when they were listed [m], (B, L)"""
     order: Index
     """Slots of the E elements that may touch others, in the order of a sweep: any order will do, the
     right one is the fastest; (B, E) int64"""
@@ -248,17 +266,21 @@ def make_state(model: Model, n_envs: int = 1) -> State:
     slots = model.mass.size
     vector, scalar = (n_envs, 3, slots), (n_envs, slots)
     shapes = {"Q": (n_envs, 3, 3, slots), "time": (n_envs,), "scratch": (n_envs, SCRATCH, slots),
-              "length": scalar, "radius": scalar, "normal_force": scalar, "decay": scalar}
+              "length": scalar, "radius": scalar, "normal_force": scalar, "decay": scalar,
+              "rod_touch": scalar}  # fmt: skip
     n_bodies = model.cylinders.mass.size
     shapes |= {name: (n_envs, n_bodies, 3) for name in State._fields if name.startswith("body_")}
-    shapes |= {"body_Q": (n_envs, n_bodies, 3, 3), "body_contact": (n_envs, n_bodies, 6, 4)}
+    shapes |= {"body_Q": (n_envs, n_bodies, 3, 3), "body_contact": (n_envs, n_bodies, 6, 7), "body_touch": scalar}
     elements = _elements(model) if model.rod_contact.is_on else np.zeros(0, dtype=np.int64)
-    shapes |= {"step": (n_envs,), "order": (n_envs, elements.size)}
-    state = State(*(aligned_zeros(shapes.get(name, vector), np.int64 if name in ("step", "order") else np.float64)
+    room = min(elements.size * (elements.size - 1) // 2, ROOM * elements.size)
+    shapes |= {"step": (n_envs,), "order": (n_envs, elements.size), "n_pairs": (n_envs,), "pairs": (n_envs, room),
+               "listed_reach": scalar}  # fmt: skip
+    whole = ("step", "order", "n_pairs", "pairs")
+    state = State(*(aligned_zeros(shapes.get(name, vector), np.int64 if name in whole else np.float64)
                     for name in State._fields))
     for i in range(3):
         state.Q[:, i, i] = state.body_Q[:, :, i, i] = 1.0
-    state.order[:] = elements
+    state.order[:], state.n_pairs[:] = elements, -1
     _assert_disjoint(state)
     return state
 

@@ -93,6 +93,19 @@ class Joints(NamedTuple):
     """C with Q1 = C Q2 at rest, (C, 3, 3)"""
 
 
+class Law(NamedTuple):
+    """How two things press and rub on each other where they overlap."""
+
+    stiffness: float
+    """Restoring force per overlap k [N/m]"""
+    damping: float
+    """Damping force per velocity of approach nu [N s/m]"""
+    friction: float
+    """Coefficient of Coulomb friction mu"""
+    slip_damping: float
+    """Force of friction per slip below the Coulomb bound c [N s/m]"""
+
+
 class BodyContacts(NamedTuple):
     """The P pairs of a rod and a rigid body that may touch."""
 
@@ -218,6 +231,8 @@ class Scene(NamedTuple):
     body_planes: Planes
     grounded: Index
     """Number of the body that each of ``body_planes`` acts on, (Q,) int64"""
+    ground_friction: Array
+    """Coefficient of Coulomb friction of that pair, (Q,)"""
     pins: Pins
     clamps: Clamps
     decay: Decay

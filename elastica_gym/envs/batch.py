@@ -24,11 +24,9 @@ from .task import Mask, Situation, Task
 
 CONTROL_DT = 0.05
 CLOCK_PERIOD = 1.0
-# least and largest value of positions, velocities, curvatures, rolls and contact in observations
-READING_BOUNDS = ((-1.0, 1.0), (-20.0, 20.0), (-10.0, 10.0), (-1.0, 1.0), (0.0, 50.0))
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
-                  "body_x", "body_v", "body_Q", "body_w")  # fmt: skip
+                  "body_x", "body_v", "body_Q", "body_w", "body_contact")  # fmt: skip
 
 
 Observations = NDArray[np.float32]
@@ -58,6 +56,8 @@ class BatchEnv(VectorEnv):
         What becomes of an environment whose episode has ended.
     weights : dict of str to float, optional
         Weights of reward terms that differ from the task's.
+    spread : str, optional
+        How the task draws its starts: one of ``task.starts``, by default the first.
     body_kwargs : dict, optional
         Passed to the function that makes the body, as ``n_elements`` of the snake.
 
@@ -71,7 +71,7 @@ class BatchEnv(VectorEnv):
         self, task: Task, num_envs: int = 1, *, control_dt: float = CONTROL_DT, sim_dt: float | None = None,
         duration: float | None = None, n_threads: int | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP, weights: dict[str, float] | None = None,
-        body_kwargs: dict[str, Any] | None = None, render_mode: None = None,
+        spread: str | None = None, body_kwargs: dict[str, Any] | None = None, render_mode: None = None,
     ) -> None:  # fmt: skip
         _require_count("num_envs", num_envs, 4096)
         if render_mode is not None:
@@ -79,6 +79,10 @@ class BatchEnv(VectorEnv):
         self.task, self.num_envs, self.render_mode = task, num_envs, render_mode
         self.body = task.make_body(**(body_kwargs or {}))
         self.weights = _merge_weights(task, weights or {})
+        self.spread = next(iter(task.starts)) if spread is None else spread
+        if self.spread not in task.starts:
+            raise ValueError(f"spread must be one of {', '.join(task.starts)}, not {spread!r}")
+        self._draw_start = task.starts[self.spread]
         self.n_threads = _available_cpus() if n_threads is None else n_threads
         _require_count("n_threads", self.n_threads, 4096)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
@@ -104,18 +108,12 @@ class BatchEnv(VectorEnv):
         self.max_episode_steps = max(1, round(duration / control_dt))
 
     def _make_spaces(self) -> None:
-        senses = self.body.senses
-        nodes, joints = senses.nodes.size, senses.joints.size
-        counts = (3 * nodes, 3 * nodes, 3 * joints, 2 * joints, senses.skin.size - 1)
-        bounds = np.concatenate([
-            np.repeat(READING_BOUNDS, counts, axis=0), np.repeat([(-1.0, 1.0)], N_ACTIVATIONS + 2, axis=0),
-            [(0.0, 1.0)], self.task.goal_bounds,
-        ]).astype(np.float32)  # fmt: skip
-        self._low, self._high = bounds.T.copy()
-        self.observation_names = (
-            *self.body.reading_names(), *(f"activation/{name}" for name in activation_names(self.body.arms)),
-            "clock/sine", "clock/cosine", "time_left", *self.task.goal_names,
-        )  # fmt: skip
+        layout = self.body.readings()
+        layout += [(f"activation/{name}", -1.0, 1.0) for name in activation_names(self.body.arms)]
+        layout += [("clock/sine", -1.0, 1.0), ("clock/cosine", -1.0, 1.0), ("time_left", 0.0, 1.0)]
+        layout += [(name, *bounds) for name, bounds in zip(self.task.goal_names, self.task.goal_bounds, strict=True)]
+        self.observation_names = tuple(name for name, _, _ in layout)
+        self._low, self._high = np.array([bounds for _, *bounds in layout], dtype=np.float32).T.copy()
         self.single_observation_space = Box(self._low, self._high, dtype=np.float32)
         self.single_action_space = Box(-1.0, 1.0, (N_ACTIVATIONS,), dtype=np.float32)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
@@ -123,14 +121,14 @@ class BatchEnv(VectorEnv):
 
     def _allocate(self) -> None:
         n = self.num_envs
-        self.state, self.control = at_rest(self.body.model, self.body.rods, n)
-        self._rest = at_rest(self.body.model, self.body.rods)[0]
-        self.pose, self._before = make_pose(n), make_pose(n)
+        n_objects = len(self.body.cylinders)
+        self.state, self.control = at_rest(self.body.model, self.body.rods, n, cylinders=self.body.cylinders)
+        self.pose, self._before = make_pose(n, n_objects), make_pose(n, n_objects)
         self.goal = np.zeros((n, self.task.goal_size))
         self.elapsed = np.zeros(n, dtype=np.int64)
         self.activations = np.zeros((n, N_ACTIVATIONS))
         self.levels = np.zeros((n, N_ACTIVATIONS))
-        self._readings = np.zeros((n, self.body.n_readings))
+        self._readings = np.zeros((n, len(self.body.readings())))
         self._observations = np.zeros((n, len(self.observation_names)), dtype=np.float32)
         self._distance = np.zeros(n)
         self._ended = np.zeros(n, dtype=bool)
@@ -198,9 +196,11 @@ class BatchEnv(VectorEnv):
         self._advance()
         sound = self.pose.sound == 1
         rewards, info = self._judge(sound)
-        terminated = ~sound | (info["is_success"] & self.task.ends_on_success)
+        ends = {name: failed(self.situation()) for name, failed in self.task.failures.items()}
+        ends |= {"success": info["is_success"] & self.task.ends_on_success, "diverged": ~sound}
+        terminated = np.any(list(ends.values()), axis=0)
         truncated = ~terminated & (self.elapsed >= self.max_episode_steps)
-        info["termination_reason"] = _reasons(sound, terminated, truncated)
+        info["termination_reason"] = _reasons({"time_limit": truncated, **ends})
         self._observe(sound)
         if begin.any():
             self._start(begin)
@@ -238,9 +238,9 @@ class BatchEnv(VectorEnv):
             old[...] = new
         feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
         diverged = self.pose.sound == 0
-        for name in ("centre", "velocity", "heading", "head"):
+        for old, new in zip(self._before._replace(sound=self.pose.sound), self.pose, strict=True):
             # what looks on, scripted policies among them, sees the last sound pose
-            getattr(self.pose, name)[diverged] = getattr(self._before, name)[diverged]
+            new[diverged] = old[diverged]
 
     def _advance_physics(self) -> None:
         """Run all substeps of a control step, the environments shared among threads."""
@@ -312,7 +312,7 @@ class BatchEnv(VectorEnv):
         self.activations[begun] = self.levels[begun] = 0.0
         self._ended[begun] = False
         for i in begun.tolist():
-            self.task.draw_start(self._generators[i], self.body, self._rest, self.state, i)
+            self._draw_start(self._generators[i], self.body, self.state, i)
             # a step of no duration moves nothing, and computes curvature and contact for the senses
             advance(self.body.model, self.state, self.control, i, i + 1, 0.0, 1)
             self.state.step[i] = 0
@@ -358,7 +358,7 @@ class BatchEnv(VectorEnv):
         })  # fmt: skip
 
     def _made_as(self) -> dict[str, Any]:
-        names = ("num_envs", "control_dt", "sim_dt", "max_episode_steps")
+        names = ("spread", "num_envs", "control_dt", "sim_dt", "max_episode_steps")
         elements = self.body.model.n_elements.tolist()
         return {"task": self.task.name, "n_elements": elements, **{name: getattr(self, name) for name in names}}
 
@@ -458,9 +458,9 @@ def _checked_seeds(seeds: Sequence[int | None], num_envs: int) -> list[int | Non
     return [None if each is None else int(each) for each in seeds]
 
 
-def _reasons(sound: Mask, terminated: Mask, truncated: Mask) -> NDArray[np.object_]:
-    reasons = np.full(sound.shape, "", dtype=object)
-    reasons[truncated] = "time_limit"
-    reasons[terminated] = "success"
-    reasons[~sound] = "diverged"
+def _reasons(ends: dict[str, Mask]) -> NDArray[np.object_]:
+    """Return why each episode ends, or an empty text; of several reasons the last."""
+    reasons = np.full(ends["diverged"].shape, "", dtype=object)
+    for name, ended in ends.items():
+        reasons[ended] = name
     return reasons

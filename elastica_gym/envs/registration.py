@@ -4,13 +4,15 @@ from typing import Any
 
 import gymnasium
 
-from . import snake_forward, snake_reach
+from . import octopus_crawl, octopus_reach, snake_forward, snake_reach
 from .batch import BatchEnv
 from .single import SingleEnv
 from .task import Task
 
 NAMESPACE = "elastica_gym"
-TASKS: dict[str, Task] = {task.name: task for task in (snake_forward.TASK, snake_reach.TASK)}
+TASKS: dict[str, Task] = {
+    module.TASK.name: module.TASK for module in (snake_forward, snake_reach, octopus_crawl, octopus_reach)
+}
 IDS = tuple(f"{NAMESPACE}/{name}-v0" for name in TASKS)
 
 

@@ -64,7 +64,7 @@ faster than 10 m/s; the last sound observation is returned.
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00011 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``body_kwargs``.
+``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("bent"), ``body_kwargs``.
 
 Version history
 ---------------
@@ -143,7 +143,7 @@ TASK = Task(
     name="SnakeForward",
     make_body=snake,
     duration=10.0,
-    draw_start=draw_start,
+    starts={"bent": draw_start},
     goal_size=4,
     draw_goal=draw_goal,
     goal_names=("goal/forward", "goal/right"),

@@ -67,7 +67,7 @@ sound observation is returned. Truncated after 20 s, which are 400 control steps
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00011 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``body_kwargs``.
+``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("bent"), ``body_kwargs``.
 
 Version history
 ---------------
@@ -82,7 +82,7 @@ from ..bodies import snake
 from ..cosserat.model import Array
 from .gaits import snake_crawl
 from .starts import draw_start
-from .task import Mask, Situation, Task, effort, in_heading_frame
+from .task import Mask, Situation, Task, effort, in_heading_frame, way_to_goal
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -115,9 +115,7 @@ def gap(situation: Situation) -> Array:
 
 def see_goal(situation: Situation) -> Array:
     """Return the way from head to target, forward and right, and its length, in body lengths, (B, 3)."""
-    s, length = situation, situation.body.senses.length
-    x, z = (s.goal[:, 0] - s.pose.head[:, 0]) / length, (s.goal[:, 1] - s.pose.head[:, 2]) / length
-    return np.stack([*in_heading_frame(s, x, z), gap(s)], axis=1)
+    return np.stack([*way_to_goal(situation), gap(situation)], axis=1)
 
 
 def approach(situation: Situation) -> Array:
@@ -166,7 +164,7 @@ TASK = Task(
     name="SnakeReach",
     make_body=snake,
     duration=20.0,
-    draw_start=draw_start,
+    starts={"bent": draw_start},
     goal_size=3,
     draw_goal=draw_goal,
     goal_names=("goal/forward", "goal/right", "goal/gap"),

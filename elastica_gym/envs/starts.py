@@ -1,4 +1,6 @@
-"""How an episode starts: the animal somewhat bent, in any direction, slightly in motion."""
+"""How an episode starts: the animal somewhat bent, in any direction, slightly in motion; its object at some place."""
+
+from collections.abc import Callable
 
 import numpy as np
 
@@ -6,45 +8,94 @@ from ..bodies.body import Body
 from ..cosserat import State
 from ..cosserat.model import Array
 
-BENDS = (2.0, 1.0, 0.5)
-"""Standard deviation of the curvature of each sine wave along the body [1/m]"""
+BENDS = (0.7, 0.35, 0.175)
+"""Standard deviation of the curvature of each sine wave along the body, where it is thinnest, in 1/body length"""
 SPEED = 0.02
 """Standard deviation of the velocity in each horizontal direction [m/s]"""
+CLEAR = 0.02
+"""Least distance between the animal's surface and an object at the start [m]"""
+ARC = 0.4
+"""Distance of the object from the head on the arc [m]"""
+RING = (0.4, 0.8)
+"""Its least and largest distance anywhere [m]"""
 
 
-def draw_start(rng: np.random.Generator, body: Body, rest: State, state: State, i: int) -> None:
+def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
     """Write a new start into environment i: shape, heading and velocity at random, muscles at rest.
 
-    All else, ghosts included, is copied from ``rest``, the State of one body at rest: what diverged leaves no trace.
+    All else, ghosts included, is copied from the body at rest: what diverged leaves no trace.
 
-    Every rod lies flat at its height: in the plane it is bent by three sine waves of random strength
-    and phase, and it straightens when let go. The animal's centre of mass is above the origin.
+    Every rod is bent sideways by couples that are three sine waves of random strength and phase, and
+    it straightens when let go: it bends by what they would bend its thinnest part, over how much
+    stiffer it is. The animal's centre of mass is above the origin.
     """
     heading = rng.uniform(-np.pi, np.pi)
     bends = rng.normal(0.0, BENDS)
     phases = rng.uniform(-np.pi, np.pi, len(BENDS))
     velocity = rng.normal(0.0, SPEED, 2)
-    for field, resting in zip(state, rest, strict=True):
+    for field, resting in zip(state, body.rest, strict=True):
         field[i] = resting[0]
     for rod, start in zip(body.rods, body.model.first_slot, strict=True):
-        n = rod.n_elements
-        position, directors = _bent(rod.rest_length, float(rod.position[1, 0]), heading, bends, phases, rod.nodal_mass)
-        state.x[i, :, start : start + n + 1] = position
-        state.Q[i, :, :, start : start + n] = directors
-        state.v[i, 0, start : start + n + 1], state.v[i, 2, start : start + n + 1] = velocity
+        n, s = rod.n_elements, (np.cumsum(rod.rest_length) - 0.5 * rod.rest_length) / rod.rest_length.sum()
+        waves = sum(b * np.sin((j + 1) * np.pi * s + p) for j, (b, p) in enumerate(zip(bends, phases, strict=True)))
+        yields = (rod.radius.min() / rod.radius) ** 4
+        turned = np.cumsum(waves * yields * rod.rest_length) / body.senses.length
+        nodes, elements = slice(start, start + n + 1), slice(start, start + n)
+        _turn(heading + turned - turned.mean(), rod.nodal_mass, state.x[i, :, nodes], state.Q[i, :, :, elements])
+        state.v[i, 0, nodes], state.v[i, 2, nodes] = velocity
 
 
-def _bent(
-    rest_length: Array, height: float, heading: float, bends: Array, phases: Array, mass: Array
-) -> tuple[Array, Array]:
-    """Return the nodes (3, n + 1) and directors (3, 3, n) of a rod bent in the horizontal plane."""
-    s = (np.cumsum(rest_length) - 0.5 * rest_length) / rest_length.sum()
-    curvature = sum(b * np.sin((j + 1) * np.pi * s + p) for j, (b, p) in enumerate(zip(bends, phases, strict=True)))
-    turned = np.cumsum(curvature * rest_length)
-    angle = heading + turned - turned.mean()
-    zero, one = np.zeros_like(angle), np.ones_like(angle)
-    tangent, normal = np.array([np.cos(angle), zero, np.sin(angle)]), np.array([zero, one, zero])
-    nodes = np.concatenate([np.zeros((3, 1)), np.cumsum(rest_length * tangent, axis=1)], axis=1)
-    nodes -= (nodes * mass).sum(axis=1, keepdims=True) / mass.sum()
-    nodes[1] = height
-    return nodes, np.array([normal, np.cross(tangent, normal, axis=0), tangent])
+def _turn(angle: Array, mass: Array, nodes: Array, directors: Array) -> None:
+    """Turn each element of a rod by an angle about the vertical, from x to z, and join them again, in place."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+
+    def turned(x: Array, z: Array) -> tuple[Array, Array]:
+        return x * cosine - z * sine, x * sine + z * cosine
+
+    directors[:, 0], directors[:, 2] = turned(directors[:, 0], directors[:, 2])
+    steps = turned(*np.diff(nodes[[0, 2]], axis=1))
+    for row, step in zip((nodes[0], nodes[2]), steps, strict=True):
+        row[0], row[1:] = 0.0, np.cumsum(step)
+        row -= (row * mass).sum() / mass.sum()
+
+
+def with_object_on_the_arc(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
+    """Write a new start, with the object at 0.4 m from the head, from straight ahead to straight to the right.
+
+    The angle is uniform, drawn again where the object would stand in the animal.
+    """
+    draw_start(rng, body, state, i)
+    _place(body, state, i, lambda: (ARC, rng.uniform(0.0, 0.5 * np.pi)))
+
+
+def with_object_anywhere(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
+    """Write a new start, with the object at 0.4 to 0.8 m from the head, in any direction; both are uniform."""
+    draw_start(rng, body, state, i)
+    _place(body, state, i, lambda: (rng.uniform(*RING), rng.uniform(-np.pi, np.pi)))
+
+
+def _place(body: Body, state: State, i: int, draw: Callable[[], tuple[float, float]]) -> None:
+    """Put the first object where ``draw`` says, as distance from the head and angle to the right [m, rad]."""
+    x, senses = state.x[i], body.senses
+    forward = np.array([x[c, senses.front[0] : senses.front[1] + 1].mean()
+                        - x[c, senses.rear[0] : senses.rear[1] + 1].mean() for c in (0, 2)])  # fmt: skip
+    forward /= np.linalg.norm(forward)
+    while True:
+        away, angle = draw()
+        cosine, sine = away * np.cos(angle), away * np.sin(angle)
+        way = cosine * forward[0] - sine * forward[1], sine * forward[0] + cosine * forward[1]
+        place = x[[0, 2], senses.head] + way
+        if _clearance(body, x, place) > CLEAR:
+            break
+    state.body_x[i, 0, [0, 2]] = place
+
+
+def _clearance(body: Body, x: Array, place: Array) -> float:
+    """Return the horizontal distance between the surfaces of the rods and of the upright object at a place [m]."""
+    least = np.inf
+    for rod, start in zip(body.rods, body.model.first_slot, strict=True):
+        nodes = x[[0, 2], start : start + rod.n_elements + 1]
+        middles = 0.5 * (nodes[:, 1:] + nodes[:, :-1])
+        away = np.linalg.norm(middles - place[:, None], axis=0) - 0.5 * rod.rest_length - rod.radius
+        least = min(least, float(away.min()))
+    return least - body.cylinders[0].radius

@@ -1,7 +1,7 @@
 """What a task is: a goal, what is seen of it, and what is rewarded. Small pure functions over a batch."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,8 +42,8 @@ class Task:
         Returns the `Body`; called with the environment's ``body_kwargs``.
     duration : float
         Simulated time of an episode [s].
-    draw_start : callable
-        Writes a new start into an environment; see `elastica_gym.envs.starts.draw_start`.
+    starts : dict of str to callable
+        By name of the ``spread``, what writes a new start into an environment; see `elastica_gym.envs.starts`.
     goal_size : int
         How many numbers G a goal is.
     draw_goal : callable
@@ -64,6 +64,9 @@ class Task:
         From a situation, whether the task is done, (B,) bool.
     ends_on_success : bool
         Whether an episode ends with success.
+    failures : dict of str to callable
+        By the name that ``termination_reason`` gives it, from a situation, whether the task has failed, which ends the
+        episode, (B,) bool.
     target : callable
         From goals, the target's position in the lab [m], (B, 3), or None where there is none to show.
     scripted_policy : callable
@@ -73,7 +76,7 @@ class Task:
     name: str
     make_body: Callable[..., Body]
     duration: float
-    draw_start: Callable[[np.random.Generator, Body, State, State, int], None]
+    starts: dict[str, Callable[[np.random.Generator, Body, State, int], None]]
     goal_size: int
     draw_goal: Callable[[np.random.Generator, Situation], Array]
     goal_names: tuple[str, ...]
@@ -84,6 +87,7 @@ class Task:
     distance: Callable[[Situation], Array]
     succeeds: Callable[[Situation], Mask]
     ends_on_success: bool
+    failures: dict[str, Callable[[Situation], Mask]] = field(default_factory=dict)
     target: Callable[[Array], Array | None]
     scripted_policy: Callable[[Any], Array]
 
@@ -92,6 +96,23 @@ def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, A
     """Return the forward and right component of horizontal vectors (x, z), in the frame of the heading, (B,) each."""
     hx, hz = situation.pose.heading[:, 0], situation.pose.heading[:, 1]
     return x * hx + z * hz, z * hx - x * hz
+
+
+def way_to_goal(situation: Situation) -> tuple[Array, Array]:
+    """Return the way from the head to the place that a goal begins with, forward and right, in body lengths."""
+    s, length = situation, situation.body.senses.length
+    x, z = (s.goal[:, 0] - s.pose.head[:, 0]) / length, (s.goal[:, 1] - s.pose.head[:, 2]) / length
+    return in_heading_frame(s, x, z)
+
+
+def has_toppled(situation: Situation) -> Mask:
+    """Return whether the animal has rolled or pitched by more than 60 degrees, (B,) bool."""
+    return situation.pose.upright < 0.5
+
+
+def toppled(situation: Situation) -> Array:
+    """Return 1 where the animal has rolled or pitched by more than 60 degrees, (B,)."""
+    return has_toppled(situation).astype(np.float64)
 
 
 def effort(situation: Situation) -> Array:

@@ -1,19 +1,27 @@
-"""The same scene in PyElastica 1.0.0, built from our own descriptions of rods, planes and waves."""
+"""The same scene in PyElastica 1.0.0, built from our own descriptions of rods, planes, waves and cylinders.
+
+Contact that docs/differences.md lists as different is corrected, by default: PyElastica's own closest points
+and forces, a pair at a time, put together as ours are.
+"""
 
 from collections.abc import Sequence
 from typing import Any
 
 import elastica as ea
 import numpy as np
+from elastica._contact_functions import _calculate_contact_forces_rod_cylinder, _calculate_contact_forces_rod_rod
+from elastica.contact_utils import _find_min_dist
 
 from elastica_gym.cosserat import Control, Model, Rod, State, Wave, advance, at_rest, build_model
 from elastica_gym.cosserat.model import Array
-from elastica_gym.cosserat.surroundings import Plane
+from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
 
-from .scenes import disturb, motion
+from .scenes import disturb, disturb_body, motion
 
 NO_RAMP = 1e-300
 """A ramp as short as PyElastica allows stands for none [s]"""
+FAR = 1e3
+"""Where what touches nothing is put [m]"""
 
 
 class _Simulator(ea.BaseSystemCollection, ea.Forcing, ea.Damping, ea.Contact):
@@ -21,47 +29,79 @@ class _Simulator(ea.BaseSystemCollection, ea.Forcing, ea.Damping, ea.Contact):
 
 
 class Twin:
-    """A rod and its surroundings in PyElastica, which steps as ours does.
+    """Rods and their surroundings in PyElastica, which step as ours do.
 
     Parameters
     ----------
-    rod : Rod
+    rods : sequence of Rod
         Without viscosity, which PyElastica 1.0.0 defines differently.
     dt : float
         [s]
-    planes, waves, gravity
+    planes, waves, gravity, cylinders, rod_contact
         As for `build_model`.
+    corrected : bool
+        Whether contact, and the inertia of cylinders, are as ours.
     """
 
     def __init__(
-        self, rod: Rod, *, dt: float, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
-        gravity: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        self, rods: Sequence[Rod], *, dt: float, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
+        gravity: tuple[float, float, float] = (0.0, 0.0, 0.0), cylinders: Sequence[Cylinder] = (),
+        rod_contact: Contact | None = None, corrected: bool = True,
     ) -> None:  # fmt: skip
-        simulator = _Simulator()
-        self.rod = _rod(rod)
-        simulator.append(self.rod)
-        if any(gravity):
-            simulator.add_forcing_to(self.rod).using(ea.GravityForces, acc_gravity=np.array(gravity))
+        self._simulator = simulator = _Simulator()
+        self.rods, self.bodies = [_rod(rod) for rod in rods], [_body(each, corrected) for each in cylinders]
+        for system in (*self.rods, *self.bodies):
+            simulator.append(system)
+            if any(gravity):
+                simulator.add_forcing_to(system).using(ea.GravityForces, acc_gravity=np.array(gravity))
         for wave in waves:
-            simulator.add_forcing_to(self.rod).using(
+            simulator.add_forcing_to(self.rods[wave.rod]).using(
                 ea.MuscleTorques, base_length=1.0, b_coeff=np.array(wave.coefficients), period=wave.period,
-                wave_number=wave.wave_number, phase_shift=wave.phase, rest_lengths=rod.rest_length,
+                wave_number=wave.wave_number, phase_shift=wave.phase, rest_lengths=rods[wave.rod].rest_length,
                 ramp_up_time=wave.ramp_time or NO_RAMP, direction=np.array(wave.axis), with_spline=True,
             )  # fmt: skip
+        self._add_contacts(cylinders, rod_contact, corrected)
         for plane in planes:
-            ground = ea.Plane(np.array(plane.origin), plane.normal / np.linalg.norm(plane.normal))
-            simulator.append(ground)
-            simulator.detect_contact_between(self.rod, ground).using(
+            self._add_plane(plane, cylinders, corrected)
+        for system, rod in zip(self.rods, rods, strict=True):
+            if rod.damping_rate > 0.0:
+                simulator.dampen(system).using(
+                    ea.AnalyticalLinearDamper, uniform_damping_constant=rod.damping_rate, time_step=dt
+                )
+        simulator.finalize()
+        self._stepper, self.dt, self.time = ea.PositionVerlet(), np.float64(dt), 0.0
+
+    def _add_contacts(self, cylinders: Sequence[Cylinder], rod_contact: Contact | None, corrected: bool) -> None:
+        detect = self._simulator.detect_contact_between
+        for body, cylinder in zip(self.bodies, cylinders, strict=True):
+            on_body = CylinderContact if corrected else ea.RodCylinderContact
+            for rod in self.rods:
+                detect(rod, body).using(on_body, **_law(cylinder.rods, friction=True))
+        if rod_contact is not None:
+            law = _law(rod_contact, friction=False)
+            for a, rod in enumerate(self.rods):
+                detect(rod, rod).using(SelfContact if corrected else ea.RodSelfContact, **law)
+                for other in self.rods[a + 1 :]:
+                    detect(rod, other).using(PairContact if corrected else ea.RodRodContact, **law)
+
+    def _add_plane(self, plane: Plane, cylinders: Sequence[Cylinder], corrected: bool) -> None:
+        ground = ea.Plane(np.array(plane.origin), plane.normal / np.linalg.norm(plane.normal))
+        self._simulator.append(ground)
+        for rod in self.rods:
+            self._simulator.detect_contact_between(rod, ground).using(
                 ea.RodPlaneContactWithAnisotropicFriction, k=plane.stiffness, nu=plane.damping,
                 slip_velocity_tol=plane.slip_tolerance, static_mu_array=np.array(plane.static_friction),
                 kinetic_mu_array=np.array(plane.kinetic_friction),
             )  # fmt: skip
-        if rod.damping_rate > 0.0:
-            simulator.dampen(self.rod).using(
-                ea.AnalyticalLinearDamper, uniform_damping_constant=rod.damping_rate, time_step=dt
-            )
-        simulator.finalize()
-        self._simulator, self._stepper, self.dt, self.time = simulator, ea.PositionVerlet(), np.float64(dt), 0.0
+        if not corrected:
+            for body, cylinder in zip(self.bodies, cylinders, strict=True):
+                self._simulator.detect_contact_between(body, ground).using(
+                    ea.CylinderPlaneContact, k=cylinder.ground_stiffness, nu=cylinder.ground_damping
+                )
+
+    def hold(self, rod: int, couple: Array, bend_stiffness: Array) -> None:
+        """Hold a muscle couple at Voronoi points [N m], (3, n - 1), as the shift of curvature at rest that it is."""
+        self.rods[rod].rest_kappa[:] -= couple / bend_stiffness
 
     def advance(self, n_steps: int) -> None:
         """Take steps of position Verlet."""
@@ -70,18 +110,151 @@ class Twin:
             time = step(simulator, time, dt)
         self.time = time
 
-    def set_state(self, x: Array, v: Array, Q: Array, w: Array, time: float) -> None:
-        """Set positions, velocities, directors, angular velocities and time."""
-        rod = self.rod
-        rod.position_collection[:], rod.velocity_collection[:] = x, v
-        rod.director_collection[:], rod.omega_collection[:] = Q, w
+    def set_state(self, motions: Sequence[tuple[Array, Array, Array, Array]], time: float) -> None:
+        """Set positions, velocities, directors and angular velocities of rods and bodies, and time."""
+        for mine, given in zip(self.motions, motions, strict=True):
+            for array, values in zip(mine, given, strict=True):
+                array[:] = values
         self.time = time
 
     @property
-    def motion(self) -> tuple[Array, Array, Array, Array]:
-        """Positions, velocities, directors and angular velocities."""
-        rod = self.rod
-        return rod.position_collection, rod.velocity_collection, rod.director_collection, rod.omega_collection
+    def motions(self) -> list[tuple[Array, Array, Array, Array]]:
+        """Positions, velocities, directors and angular velocities, of each rod and then of each body."""
+        return [(each.position_collection, each.velocity_collection, each.director_collection, each.omega_collection)
+                for each in (*self.rods, *self.bodies)]  # fmt: skip
+
+
+# contact, corrected
+
+
+class CylinderContact(ea.RodCylinderContact):
+    """A rod on a cylinder."""
+
+    def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
+        rod, body = system_one, system_two
+        axis, centre = body.director_collection[2, :, 0], body.position_collection[:, 0]
+        start, edge, spin = centre - 0.5 * body.length * axis, body.length * axis, _spin(body, 0)
+        for k in range(rod.n_elems):
+            a, e, middle = _element(rod, k)
+            met = _overlap(a, e, rod.radius[k], start, edge, body.radius)
+            if met is None:
+                continue
+            g, n, point = met
+            arm, body_arm = point - middle, point - centre
+            u = _surface_velocity(rod, k, arm) - body.velocity_collection[:, 0] - np.cross(spin, body_arm)
+            if self.k * g + self.nu * u @ n <= 0.0:
+                continue
+            # the rod's velocity is u, the cylinder's none, and its centre is where the force acts
+            moving = np.repeat(u[:, None], 4, axis=1)
+            force, on_body, torque = np.zeros((3, 4)), np.zeros((3, 1)), np.zeros((3, 1))
+            _calculate_contact_forces_rod_cylinder(
+                _three(a), np.repeat(e[:, None], 3, axis=1), point, start, edge,
+                np.full(3, rod.radius[k] + body.radius), np.full(3, rod.lengths[k] + body.length), force, force,
+                on_body, torque, np.eye(3), moving, np.zeros((3, 1)), self.k, self.nu,
+                self.velocity_damping_coefficient, self.friction_coefficient,
+            )  # fmt: skip
+            f = on_body[:, 0]
+            _load(rod, k, -f, arm)
+            body.external_forces[:, 0] += f
+            body.external_torques[:, 0] += body.director_collection[:, :, 0] @ np.cross(body_arm, f)
+
+
+class PairContact(ea.RodRodContact):
+    """A rod on another."""
+
+    def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
+        for i in range(system_one.n_elems):
+            for j in range(system_two.n_elems):
+                _meet(system_one, i, system_two, j, self.k, self.nu)
+
+
+class SelfContact(ea.RodSelfContact):
+    """A rod on itself."""
+
+    def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
+        rod = system_one
+        x = rod.position_collection
+        middle, reach = 0.5 * (x[:, 1:] + x[:, :-1]), rod.radius + 0.5 * rod.lengths
+        for i in range(rod.n_elems):
+            skip = int(1 + np.ceil(0.8 * np.pi * rod.radius[i] / rod.lengths[i]))
+            near = np.linalg.norm(middle - middle[:, i : i + 1], axis=0) < reach + reach[i]
+            for j in np.flatnonzero(near[: max(i - skip + 1, 0)]):
+                _meet(rod, j, rod, i, self.k, self.nu)
+
+
+def _meet(one: Any, i: int, two: Any, j: int, k: float, nu: float) -> None:
+    """Add the forces between an element of one rod and an element of another."""
+    a, e, middle = _element(one, i)
+    b, f, other_middle = _element(two, j)
+    met = _overlap(a, e, one.radius[i], b, f, two.radius[j])
+    if met is None:
+        return
+    g, n, point = met
+    arm, other_arm = point - middle, point - other_middle
+    u = _surface_velocity(one, i, arm) - _surface_velocity(two, j, other_arm)
+    if k * g + nu * u @ n <= 0.0:
+        return
+    forces, still = [np.zeros((3, 4)), np.zeros((3, 4))], np.zeros((3, 4))
+    _calculate_contact_forces_rod_rod(
+        _three(a), np.full(3, one.radius[i]), np.full(3, one.lengths[i]), np.repeat(one.tangents[:, i : i + 1], 3, 1),
+        np.repeat(u[:, None], 4, axis=1), still, forces[0], _three(b, -FAR), np.full(3, two.radius[j]),
+        np.full(3, two.lengths[j]), np.repeat(two.tangents[:, j : j + 1], 3, 1), still, still, forces[1], k, nu,
+    )  # fmt: skip
+    _load(one, i, forces[0].sum(axis=1), arm)
+    _load(two, j, forces[1].sum(axis=1), other_arm)
+
+
+def _three(a: Array, far: float = FAR) -> Array:
+    """Return the start of an element between two that are far away: PyElastica treats end elements otherwise."""
+    return np.stack([a + far, a, a + 2.0 * far], axis=1)
+
+
+def _element(rod: Any, k: int) -> tuple[Array, Array, Array]:
+    """Return where an element starts, its edge and its centre."""
+    a, e = rod.position_collection[:, k].copy(), rod.lengths[k] * rod.tangents[:, k]
+    return a, e, a + 0.5 * e
+
+
+def _overlap(a: Array, e: Array, r1: float, b: Array, f: Array, r2: float) -> tuple[float, Array, Array] | None:
+    """Return how deep two segments overlap, n and the middle of the overlap, if they do."""
+    towards, on_second, _ = _find_min_dist(a, e, b, f)
+    d = np.linalg.norm(towards)
+    g = r1 + r2 - d
+    n = towards / d
+    return (g, n, on_second - (r2 - 0.5 * g) * n) if g > 0.0 else None
+
+
+def _spin(system: Any, k: int) -> Array:
+    return system.director_collection[:, :, k].T @ system.omega_collection[:, k]
+
+
+def _surface_velocity(rod: Any, k: int, arm: Array) -> Array:
+    v = rod.velocity_collection
+    return 0.5 * (v[:, k] + v[:, k + 1]) + np.cross(_spin(rod, k), arm)
+
+
+def _load(rod: Any, k: int, f: Array, arm: Array) -> None:
+    """Add a force on an element, ``arm`` from its centre."""
+    rod.external_forces[:, k] += 0.5 * f
+    rod.external_forces[:, k + 1] += 0.5 * f
+    rod.external_torques[:, k] += rod.director_collection[:, :, k] @ np.cross(arm, f)
+
+
+def _law(contact: Contact, *, friction: bool) -> dict[str, float]:
+    if not friction:
+        return {"k": contact.stiffness, "nu": contact.damping}
+    # friction is of half a contact there, so its slip damping is half of ours
+    return {"k": contact.stiffness, "nu": contact.damping, "friction_coefficient": contact.friction,
+            "velocity_damping_coefficient": 0.5 * contact.slip_damping}  # fmt: skip
+
+
+def _body(cylinder: Cylinder, corrected: bool) -> ea.Cylinder:
+    Q, volume = cylinder.directors, np.pi * cylinder.radius**2 * cylinder.length
+    body = ea.Cylinder(np.array(cylinder.start), Q[2], Q[0], cylinder.length, cylinder.radius, cylinder.mass / volume)
+    if corrected:
+        body.mass_second_moment_of_inertia[:] = np.diag(cylinder.inertia)[..., None]
+        body.inv_mass_second_moment_of_inertia[:] = np.diag(1.0 / cylinder.inertia)[..., None]
+    return body
 
 
 def _rod(rod: Rod) -> ea.CosseratRod:
@@ -94,34 +267,64 @@ def _rod(rod: Rod) -> ea.CosseratRod:
     )  # fmt: skip
 
 
-def both(rod: Rod, dt: float, **loads: Any) -> tuple[Model, State, Control, Twin]:
-    """Return a scene of ours, at rest, and its twin."""
-    model = build_model([rod], **loads)
-    return model, *at_rest(model, [rod]), Twin(rod, dt=dt, **loads)
+def both(
+    rods: Sequence[Rod], dt: float, *, couple: Array | None = None, corrected: bool = True, **loads: Any
+) -> tuple[Model, State, Control, Twin]:
+    """Return a scene of ours, at rest, and its twin; the first rod's muscles hold ``couple`` [N m], (3, n - 1)."""
+    model, twin = build_model(rods, **loads), Twin(rods, dt=dt, corrected=corrected, **loads)
+    state, control = at_rest(model, rods, cylinders=loads.get("cylinders", ()))
+    if couple is not None:
+        first = int(model.first_slot[0])
+        control.couple[0, :, first : first + couple.shape[1]] = couple
+        twin.hold(0, couple, rods[0].bend_stiffness)
+    return model, state, control, twin
+
+
+def motions(model: Model, state: State) -> list[tuple[Array, Array, Array, Array]]:
+    """Return views of our motion, as `Twin.motions`."""
+    bodies = [(state.body_x[0, b][:, None], state.body_v[0, b][:, None], state.body_Q[0, b][:, :, None],
+               state.body_w[0, b][:, None]) for b in range(model.cylinders.mass.size)]  # fmt: skip
+    return [*(motion(model, state, rod=r) for r in range(model.n_elements.size)), *bodies]
 
 
 def distance(model: Model, state: State, twin: Twin) -> float:
     """Return the largest difference of positions [m]."""
-    return float(np.abs(motion(model, state)[0] - twin.motion[0]).max())
+    return max(float(np.abs(ours[0] - theirs[0]).max())
+               for ours, theirs in zip(motions(model, state), twin.motions, strict=True))  # fmt: skip
 
 
-def worst_step(rod: Rod, dt: float, n_states: int, **loads: Any) -> float:
-    """Return how much one step from random states differs.
+def worst_step(
+    rods: Sequence[Rod], dt: float, n_states: int, *, couple: Array | None = None, **loads: Any
+) -> tuple[float, int]:
+    """Return how much one step from random states differs, and in how many of them rods or bodies touched.
 
-    For v and w relative to their largest change, for x and Q absolute; the largest of all.
+    For v and w relative to their largest change, or to a tenth of the largest in all states where there is
+    hardly any; for x and Q absolute; the largest of all.
     """
-    model, state, control, twin = both(rod, dt, **loads)
+    model, state, control, twin = both(rods, dt, couple=couple, **loads)
     rng = np.random.default_rng(0)
-    worst = 0.0
+    differences, changes, n_touching = [], [], 0
     for number in range(n_states):
         # sliding (in part, where the slip tolerance is large) or sticking
-        disturb(rod, model, state, rng, speed=(1.0, 1e-9)[number % 2])
+        speed = (1.0, 1e-9)[number % 2]
+        for r, rod in enumerate(rods):
+            disturb(rod, model, state, rng, speed=speed, number=r)
+        for b, cylinder in enumerate(loads.get("cylinders", ())):
+            disturb_body(cylinder, state, rng, number=b)
         state.time[0] = time = rng.uniform(0.0, 3.0)
-        before = tuple(a.copy() for a in motion(model, state))
-        twin.set_state(*before, time)
+        before = [tuple(a.copy() for a in each) for each in motions(model, state)]
+        twin.set_state(before, time)
         advance(model, state, control, 0, 1, dt, 1)
         twin.advance(1)
-        for index, (ours, theirs, start) in enumerate(zip(motion(model, state), twin.motion, before, strict=True)):
-            scale = np.abs(theirs - start).max() if index in (1, 3) else 1.0
-            worst = max(worst, float(np.abs(ours - theirs).max() / scale))
-    return worst
+        n_touching += bool((state.body_touch + state.rod_touch).any())
+        differences.append(_largest(motions(model, state), twin.motions))
+        changes.append(_largest(twin.motions, before))
+    change = np.maximum(changes, 0.1 * np.max(changes, axis=0))
+    change[:, :, (0, 2)] = 1.0
+    return float((differences / change).max()), n_touching
+
+
+def _largest(these: Sequence[tuple[Array, ...]], those: Sequence[tuple[Array, ...]]) -> Array:
+    """Return the largest differences of x, v, Q and w of each rod and body, (rods and bodies, 4)."""
+    return np.array([[np.abs(a - b).max() for a, b in zip(this, that, strict=True)]
+                     for this, that in zip(these, those, strict=True)])  # fmt: skip

@@ -4,7 +4,8 @@ import numpy as np
 
 from elastica_gym.cosserat import Rod, State, Wave
 from elastica_gym.cosserat.model import Array, Model
-from elastica_gym.cosserat.surroundings import Plane
+from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
+from elastica_gym.muscles import DIRECTIONS, Muscles
 
 LENGTH = 0.35
 RADIUS = 0.011 * LENGTH
@@ -48,6 +49,52 @@ def kinked(n: int = 40, **material: object) -> Rod:
     return Rod.through(nodes, normal=(1.0, 0.0, 0.0), radius=radius, **{**given, **material})
 
 
+def loop(n: int, *, size: float, gap: float, radius: float, **material: float) -> Rod:
+    """Return a rod at rest as a loop of this size, whose ends pass each other with their axes ``gap`` apart."""
+    t = np.linspace(-1.4, 1.4, 1001)
+    curve = np.array([size * (t**2 - 1.0), 0.5 * gap * t, size * t * (t**2 - 1.0)])
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve), axis=0))])
+    nodes = np.array([np.interp(np.linspace(0.0, s[-1], n + 1), s, row) for row in curve])
+    return Rod.through(nodes, normal=(0.0, 1.0, 0.0), radius=np.full(n, radius), **material)
+
+
+ARMS_STEP = 4e-5
+"""[s]"""
+ARMS_MUSCLES = Muscles(
+    magnitudes=dict.fromkeys(DIRECTIONS, (0.3, 0.2, 0.1)), widths=dict.fromkeys(DIRECTIONS, (0.40, 0.25, 0.15)),
+    arms=((0.4, 0.0), (0.6, 1.0)), activation_time=0.0,
+)  # fmt: skip
+ARMS_CONTACT = Contact(stiffness=1e4, damping=5.0, friction=0.4, slip_damping=20.0)
+
+
+def arms(n: int = 120) -> Rod:
+    """Return two arms of 0.4 m, which a bend of 0.2 m joins at an angle of 70 degrees, on the ground."""
+    angle = np.interp((np.arange(n) + 0.5) / n, (0.4, 0.6), (-0.96, 0.96))
+    edges = np.array([np.cos(angle), np.zeros(n), np.sin(angle)]) / n
+    nodes = np.concatenate([np.zeros((3, 1)), np.cumsum(edges, axis=1)], axis=1)
+    directors = np.zeros((3, 3, n))
+    directors[0, 1], directors[2] = 1.0, edges * n
+    directors[1] = np.cross(directors[2], directors[0], axis=0)
+    # at rest as it is: bending of each joint about d1, which is up
+    rest_kappa = np.zeros((3, n - 1))
+    rest_kappa[0] = -np.diff(angle) * n
+    return Rod(
+        position=nodes + np.array([[0.0], [0.03], [0.0]]), directors=directors, radius=np.full(n, 0.03),
+        rest_kappa=rest_kappa, density=1000.0, youngs_modulus=1e6, shear_modulus=1e6 / 1.5, damping_rate=5.0,
+    )  # fmt: skip
+
+
+def held(height: float = 0.0) -> Cylinder:
+    """Return an object that stands in the bend of the arms, touching it, ``height`` above the ground [m]."""
+    rod = arms()
+    middle, up = rod.n_elements // 2, np.array([0.0, 1.0, 0.0])
+    inwards = np.cross(up, rod.directors[2, :, middle])
+    x, _, z = rod.position[:, middle] - (0.03 + 0.05 - 5e-4) * inwards
+    return Cylinder(start=(x, height, z), direction=(0.0, 1.0, 0.0), normal=(1.0, 0.0, 0.0), length=0.6, radius=0.05,
+                    mass=4.0, rods=ARMS_CONTACT, ground_stiffness=1e4, ground_damping=20.0,
+                    ground_friction=0.4)  # fmt: skip
+
+
 def motion(model: Model, state: State, env: int = 0, rod: int = 0) -> tuple[Array, Array, Array, Array]:
     """Return views of a rod's positions, velocities, directors and angular velocities."""
     start, n = int(model.first_slot[rod]), int(model.n_elements[rod])
@@ -55,9 +102,11 @@ def motion(model: Model, state: State, env: int = 0, rod: int = 0) -> tuple[Arra
     return state.x[env][:, nodes], state.v[env][:, nodes], state.Q[env][:, :, elements], state.w[env][:, elements]
 
 
-def disturb(rod: Rod, model: Model, state: State, rng: np.random.Generator, speed: float = 1.0) -> None:
+def disturb(
+    rod: Rod, model: Model, state: State, rng: np.random.Generator, speed: float = 1.0, number: int = 0
+) -> None:
     """Shake a rod in place: nodes by 3 % of an element, directors by 0.05 rad, velocities by 0.1 m/s and 5 rad/s."""
-    x, v, Q, w = motion(model, state)
+    x, v, Q, w = motion(model, state, rod=number)
     n = rod.n_elements
     x[:] = rod.position + 0.03 * rod.rest_length.mean() * rng.standard_normal((3, n + 1))
     v[:] = speed * 0.1 * rng.standard_normal((3, n + 1))
@@ -65,8 +114,22 @@ def disturb(rod: Rod, model: Model, state: State, rng: np.random.Generator, spee
     Q[:] = np.einsum("kij,jlk->ilk", rotations(0.05 * rng.standard_normal((n, 3))), rod.directors)
 
 
+def disturb_body(cylinder: Cylinder, state: State, rng: np.random.Generator, number: int = 0) -> None:
+    """Shake a cylinder in place: by 1 mm, 0.05 rad, 0.1 m/s and 0.2 rad/s."""
+    state.body_x[0, number] = cylinder.centre + 1e-3 * rng.standard_normal(3)
+    state.body_v[0, number] = 0.1 * rng.standard_normal(3)
+    state.body_w[0, number] = 0.2 * rng.standard_normal(3)
+    state.body_Q[0, number] = rotations(0.05 * rng.standard_normal((1, 3)))[0] @ cylinder.directors
+
+
 def rotations(vectors: Array) -> Array:
     """Return the matrices of rotation vectors [rad], (n, 3) to (n, 3, 3)."""
     from scipy.spatial.transform import Rotation
 
     return Rotation.from_rotvec(vectors).as_matrix()
+
+
+def without_contact(model: Model) -> Model:
+    """Return a model whose rods touch neither cylinders nor each other."""
+    none = type(model.cylinders)(*(column[:0] for column in model.cylinders))
+    return model._replace(cylinders=none, rod_contact=model.rod_contact._replace(is_on=False))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from elastica_gym.cosserat import Wave, advance
-from elastica_gym.cosserat.surroundings import Plane
+from elastica_gym.cosserat import Rod, Wave, advance
+from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
 
-from .scenes import FRICTION, GRAVITY, TIME_STEP, WAVE, ground, kinked, motion, snake
+from .scenes import FRICTION, GRAVITY, TIME_STEP, WAVE, ground, kinked, loop, motion, snake
 
 oracle = pytest.importorskip("tests.cosserat.oracle", reason="pip install 'elastica-gym[bench]'")
 
@@ -31,7 +31,7 @@ LOADS = {
 @pytest.mark.parametrize("rod", [snake(), snake(damping_rate=10.0), kinked(), kinked(rest_kappa=np.zeros((3, 39)))],
                          ids=["snake", "damped", "kinked", "straightening"])  # fmt: skip
 def test_trajectory_without_friction(rod):
-    model, state, control, twin = oracle.both(rod, TIME_STEP, gravity=GRAVITY, waves=[WAVE])
+    model, state, control, twin = oracle.both([rod], TIME_STEP, gravity=GRAVITY, waves=[WAVE])
     advance(model, state, control, 0, 1, TIME_STEP, 2000)
     twin.advance(2000)
     assert oracle.distance(model, state, twin) < 1e-9
@@ -39,7 +39,7 @@ def test_trajectory_without_friction(rod):
 
 
 def test_trajectory_with_friction():
-    model, state, control, twin = oracle.both(snake(), TIME_STEP, **LOADS["all"])
+    model, state, control, twin = oracle.both([snake()], TIME_STEP, **LOADS["all"])
     advance(model, state, control, 0, 1, TIME_STEP, 100)
     twin.advance(100)
     assert oracle.distance(model, state, twin) < 1e-9
@@ -47,13 +47,45 @@ def test_trajectory_with_friction():
 
 @pytest.mark.parametrize("loads", LOADS.values(), ids=LOADS.keys())
 def test_each_load(loads):
-    assert oracle.worst_step(snake(damping_rate=10.0), TIME_STEP, 60, **loads) < 1e-11
+    assert oracle.worst_step([snake(damping_rate=10.0)], TIME_STEP, 60, **loads)[0] < 1e-11
 
 
 def test_whole_step_from_a_thousand_states():
-    assert oracle.worst_step(snake(), TIME_STEP, 1000, **LOADS["all"]) < 1e-11
+    assert oracle.worst_step([snake()], TIME_STEP, 1000, **LOADS["all"])[0] < 1e-11
 
 
 def test_tapered_kinked_rod_on_the_ground():
     rod = kinked(damping_rate=3.0)
-    assert oracle.worst_step(rod, TIME_STEP, 100, gravity=GRAVITY, planes=[TILTED]) < 1e-11
+    assert oracle.worst_step([rod], TIME_STEP, 100, gravity=GRAVITY, planes=[TILTED])[0] < 1e-11
+
+
+# contact, as corrected in the oracle
+
+ARM = dict(density=1000.0, youngs_modulus=2e4, shear_modulus=8e3, radius=0.025, damping_rate=2.0)
+LAW = Contact(stiffness=2e3, damping=2.0, friction=0.4, slip_damping=3.0)
+SMOOTH = Contact(stiffness=2e3, damping=2.0)
+STEP = 4e-5
+OBJECT = Cylinder(start=(-0.02, 0.08, 0.02), direction=(0.1, 1.0, 0.2), normal=(1.0, -0.1, 0.0), length=0.3,
+                  radius=0.05, mass=2.0, rods=LAW, ground_stiffness=1e4)  # fmt: skip
+
+
+def arm(n: int, start: tuple, direction: tuple) -> Rod:
+    normal = np.cross(direction, (0.3, 0.5, -0.8))
+    return Rod.straight(n, start=start, direction=direction, normal=normal, length=0.5, **ARM)
+
+
+SCENES = {
+    "rod and cylinder": ([arm(16, (-0.25, 0.15, 0.037), (1.0, 0.1, 0.3))], dict(cylinders=[OBJECT])),
+    "on the ground": ([arm(16, (-0.25, 0.024, 0.034), (1.0, 0.0, 0.1))],
+                      dict(cylinders=[OBJECT], planes=[TILTED], gravity=GRAVITY)),
+    "two rods": ([arm(12, (-0.25, 0.0, 0.0), (1.0, 0.0, 0.0)), arm(10, (-0.1, 0.047, -0.2), (0.5, 0.0, 0.9))],
+                 dict(rod_contact=SMOOTH)),
+    "self contact": ([loop(40, size=0.3, gap=0.047, **ARM)], dict(rod_contact=SMOOTH)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("rods", "loads"), SCENES.values(), ids=SCENES.keys())
+def test_whole_step_in_contact_from_a_thousand_states(rods, loads):
+    worst, n_touching = oracle.worst_step(rods, STEP, 1000, **loads)
+    assert worst < 1e-11
+    assert n_touching > 900

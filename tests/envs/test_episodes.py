@@ -56,16 +56,18 @@ def test_same_step_returns_the_last_observation_aside(env_id, make_vec):
 @pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
 def test_an_automatic_episode_equals_one_asked_for(env_id, make_vec, mode):
     automatic, asked = (make_vec(env_id, 2, autoreset_mode=m) for m in (mode, AutoresetMode.DISABLED))
+    # an octopus topples if it clenches
+    gently = np.full((2, 42), 0.05)
     for env in (automatic, asked):
         env.reset(seed=0)
         for _ in range(STEPS):
-            env.step(np.ones((2, 42)))
+            env.step(gently)
     if mode == AutoresetMode.NEXT_STEP:
-        automatic.step(np.ones((2, 42)))
+        automatic.step(gently)
     asked.reset()
     np.testing.assert_array_equal(automatic.goal, asked.goal)
     for _ in range(3):
-        for a, b in zip(automatic.step(np.ones((2, 42)))[:4], asked.step(np.ones((2, 42)))[:4], strict=True):
+        for a, b in zip(automatic.step(gently)[:4], asked.step(gently)[:4], strict=True):
             np.testing.assert_array_equal(a, b)
 
 

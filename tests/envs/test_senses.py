@@ -1,5 +1,6 @@
 """What the snake feels is so."""
 
+import gymnasium
 import numpy as np
 import pytest
 
@@ -72,3 +73,8 @@ def test_a_bend_to_the_right_turns_to_the_right(make_vec, sign):
         turned += np.angle(np.exp(1j * (now - before)))
         before = now
     assert (sign * turned > 1.0).all()
+
+
+def test_too_few_elements_are_refused():
+    with pytest.raises(ValueError, match="n_elements must be at least 16, not 3"):
+        gymnasium.make_vec(FORWARD, num_envs=1, body_kwargs={"n_elements": 3})

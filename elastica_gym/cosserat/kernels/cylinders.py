@@ -6,85 +6,69 @@ its ends are domes to them. Planes meet it as it is, at the rims of its flat end
 
 from math import sqrt
 
-from .compiler import FIRST, ONE, apart, inner
-from .contact import closest, press
-from .roots import TINY
-from .vectors import (
-    add,
-    add_column,
-    column,
-    cross,
-    dot,
-    norm,
-    plus,
-    times,
-    to_lab,
-    to_lab_at,
-    to_material,
-    to_material_at,
-    vector,
-)
+from .compiler import FIRST, ONE, apart, inner, stage
+from .contact import load, middle, overlap, press, surface_velocity
+from .roots import inverse_sqrt
+from .vectors import add, column, cross, dot, norm, plus, times, to_lab, to_material, vector
 
 # points of contact: three on either rim
 POINTS = 6
-# passes over the points of contact, each of which sees what the others have changed
+# most passes over the points of contact, each of which sees what the others have changed
 SWEEPS = 30
+# change of friction in a pass, relative to its bound, below which it is found
+SETTLED = 1e-5
+
+
+@stage
+def clearance(n, x, length, radius, body_radius, body_length, centre, axis, gap):
+    """Compute a lower bound of the gap between elements and a cylinder: as if they were balls about their centres."""
+    c0, c1, c2 = centre
+    a0, a1, a2 = axis
+    half = 0.5 * body_length
+    for k in range(FIRST, n):
+        j = k + ONE
+        d0, d1, d2 = 0.5 * (x[0][k] + x[0][j]) - c0, 0.5 * (x[1][k] + x[1][j]) - c1, 0.5 * (x[2][k] + x[2][j]) - c2
+        # to the nearest point of the axis
+        along = d0 * a0 + d1 * a1 + d2 * a2
+        along = along if along < half else half
+        along = along if along > -half else -half
+        d0, d1, d2 = d0 - along * a0, d1 - along * a1, d2 - along * a2
+        squared = d0 * d0 + d1 * d1 + d2 * d2
+        reach = 0.5 * length[k] + radius[k] + body_radius
+        # a ghost has no section
+        gap[k] = squared * inverse_sqrt(squared) - reach if radius[k] > 0.0 else 1.0
 
 
 @apart
-def rods_on_cylinders(
-    n, x, v, Q, w, length, radius, cylinders, body_x, body_v, body_Q, body_w, force, torque, body_force, body_torque,
-):  # fmt: skip
-    """Add the forces between all rods and all cylinders where they overlap."""
-    c = cylinders
-    for b in range(c.mass.size):
-        rod_on_cylinder(
-            FIRST, n, x, v, Q, w, length, radius, c.length[b], c.radius[b], c.rod_stiffness[b], c.rod_damping[b],
-            c.rod_friction[b], c.rod_slip_damping[b], body_x[b], body_v[b], body_Q[b], body_w[b], force, torque,
-            body_force[b], body_torque[b],
-        )  # fmt: skip
+def rods_on_cylinders(n, gap, x, v, Q, w, length, radius, cylinders, bodies, force, torque, touch):
+    """Add the forces between rod elements and cylinders where they overlap, action and reaction.
 
-
-@inner
-def rod_on_cylinder(
-    first, last, x, v, Q, w, length, radius, length2, r2, stiffness, damping, friction, slip_damping, body_x, body_v,
-    body_Q, body_w, force, torque, body_force, body_torque,
-):  # fmt: skip
-    """Add the forces between elements from slot first to last - 1 and a cylinder, action and reaction.
-
-    Half of the force on an element goes to each of its nodes, and its slip is that of their mean
-    velocity. Both slips include the spin of the surface, and both bodies get the torque of the
-    force about where it is: the element about its axis, the cylinder about its centre.
+    Half of the force on an element goes to each of its nodes, and its velocity is their mean. Both
+    velocities include the spin, and both get the torque of the force about their centre. Adds the
+    normal forces to ``touch``.
     """
-    centre, axis = vector(body_x), vector(body_Q[2])
-    start, edge = plus(centre, -0.5 * length2, axis), times(length2, axis)
-    velocity, spin = vector(body_v), to_lab(body_Q, vector(body_w))
-    for k in range(first, last):
-        r1, j = radius[k], k + ONE
-        here, there = column(x, k), column(x, j)
-        # what is further from the cylinder's middle than half of both lengths and both radii touches nothing
-        between = plus(times(0.5, plus(here, 1.0, there)), -1.0, centre)
-        reach = 0.5 * (length[k] + length2) + r1 + r2
-        # (a ghost has no section)
-        if dot(between, between) < reach * reach and r1 > 0.0:
-            e = plus(there, -1.0, here)
-            p, q = closest(here, e, start, edge)
-            on_axis = plus(start, q, edge)
-            towards = plus(on_axis, -1.0, plus(here, p, e))
-            d = norm(towards)
-            # axes that cross have no direction to part in
-            if r1 + r2 > d and d * d > TINY:
-                normal = times(1.0 / d, towards)
-                arm1, arm2 = times(r1, normal), plus(plus(on_axis, -r2, normal), -1.0, centre)
-                u = times(0.5, plus(column(v, k), 1.0, column(v, j)))
-                u = plus(u, 1.0, cross(to_lab_at(Q, k, column(w, k)), arm1))
-                u = plus(u, -1.0, plus(velocity, 1.0, cross(spin, arm2)))
-                f = press(r1 + r2 - d, normal, u, stiffness, damping, friction, slip_damping)
-                add_column(force, k, -0.5, f)
-                add_column(force, j, -0.5, f)
-                add_column(torque, k, -1.0, to_material_at(Q, k, cross(arm1, f)))
-                add(body_force, 1.0, f)
-                add(body_torque, 1.0, to_material(body_Q, cross(arm2, f)))
+    c = cylinders
+    body_x, body_v, body_Q, body_w, body_force, body_torque = bodies
+    for b in range(c.mass.size):
+        centre, axis, body_radius = vector(body_x[b]), vector(body_Q[b, 2]), c.radius[b]
+        start, edge = plus(centre, -0.5 * c.length[b], axis), times(c.length[b], axis)
+        velocity, spin = vector(body_v[b]), to_lab(body_Q[b], vector(body_w[b]))
+        clearance(n, (x[0], x[1], x[2]), length, radius, body_radius, c.length[b], centre, axis, gap)
+        for k in range(FIRST, n):
+            if gap[k] < 0.0:
+                first = column(x, k)
+                e = plus(column(x, k + ONE), -1.0, first)
+                g, normal, point = overlap(first, e, radius[k], start, edge, body_radius)
+                if g > 0.0:
+                    arm, body_arm = plus(point, -1.0, middle(x, k)), plus(point, -1.0, centre)
+                    u = surface_velocity(v, Q, w, k, arm)
+                    u = plus(u, -1.0, plus(velocity, 1.0, cross(spin, body_arm)))
+                    f, N = press(g, normal, u, c.rod_stiffness[b], c.rod_damping[b], c.rod_friction[b],
+                                 c.rod_slip_damping[b])  # fmt: skip
+                    load(force, torque, Q, k, times(-1.0, f), arm)
+                    add(body_force[b], 1.0, f)
+                    add(body_torque[b], 1.0, to_material(body_Q[b], cross(body_arm, f)))
+                    touch[k] += N
 
 
 @inner
@@ -106,81 +90,93 @@ def rim(Q, length, radius, n, number):
     return plus(plus(end, radius * cosine, down), radius * sine, side)
 
 
-@inner
-def turned(Q, J, a):
-    """Return Q^T J^-1 Q a, the angular acceleration that a torque a causes, both in the lab."""
-    t = to_material(Q, a)
-    return to_lab(Q, (t[0] / J[0], t[1] / J[1], t[2] / J[2]))
-
-
 @apart
 def cylinders_on_planes(dt, cylinders, planes, x, v, directors, w, contact, force, torque):
-    """Add what all planes do to all cylinders. Comes after every other load."""
+    """Add the response of the planes and Coulomb friction at the rims' points of contact; after every other load.
+
+    The response is k times the depth and nu times the approach of each point, never adhesive. ``contact``
+    gets N, friction and the point from the centre, all in the lab, (C, 6, 7); the friction in it is where the
+    search for the new one starts.
+    """
     c, p = cylinders, planes
     for b in range(c.mass.size):
+        Q, J = directors[b], c.inertia[b]
+        velocity, spin = vector(v[b]), to_lab(Q, vector(w[b]))
         for j in range(p.stiffness.size):
-            cylinder_on_plane(
-                dt, vector(p.normal[j]), vector(p.origin[j]), c.ground_stiffness[b], c.ground_damping[b],
-                c.ground_friction[b], c.length[b], c.radius[b], c.mass[b], c.inertia[b], x[b], v[b], directors[b], w[b],
-                contact[b], force[b], torque[b],
-            )  # fmt: skip
+            n = vector(p.normal[j])
+            height = dot(plus(vector(x[b]), -1.0, vector(p.origin[j])), n)
+            touching = False
+            for number in range(POINTS):
+                arm = rim(Q, c.length[b], c.radius[b], n, number)
+                depth = -height - dot(arm, n)
+                N = c.ground_stiffness[b] * depth - c.ground_damping[b] * dot(plus(velocity, 1.0, cross(spin, arm)), n)
+                N = N if N > 0.0 and depth > 0.0 else 0.0
+                touching = touching or N > 0.0
+                point = contact[b, number]
+                # what stops slip within a step of no duration is not defined
+                last = vector(point[1:]) if dt > 0.0 else (0.0, 0.0, 0.0)
+                point[0] = N
+                point[1], point[2], point[3] = within(c.ground_friction[b] * N, plus(last, -dot(last, n), n))
+                point[4], point[5], point[6] = arm
+                add(force[b], N, n)
+                add(torque[b], N, to_material(Q, cross(arm, n)))
+            if touching and c.ground_friction[b] > 0.0 and dt > 0.0:
+                momentum = J[0] * w[b, 0], J[1] * w[b, 1], J[2] * w[b, 2]
+                turn = plus(vector(torque[b]), 1.0, cross(momentum, vector(w[b])))
+                ahead = plus(velocity, dt / c.mass[b], vector(force[b]))
+                spin_ahead = plus(spin, dt, to_lab(Q, (turn[0] / J[0], turn[1] / J[1], turn[2] / J[2])))
+                rub(dt, contact[b], c.ground_friction[b], n, vector(Q[2]), c.mass[b], J, ahead, spin_ahead)
+                for number in range(POINTS):
+                    point = contact[b, number]
+                    friction = vector(point[1:])
+                    add(force[b], 1.0, friction)
+                    add(torque[b], 1.0, to_material(Q, cross(vector(point[4:]), friction)))
 
 
 @inner
-def cylinder_on_plane(
-    dt, n, origin, stiffness, damping, friction, length, radius, mass, J, x, v, Q, w, contact, force, torque,
-):  # fmt: skip
-    """Add the response of a plane and Coulomb friction at the points of contact of a cylinder's rims.
+def within(most, a):
+    """Return a, shortened to the length ``most`` if it is longer."""
+    size = norm(a)
+    return times(most / size, a) if size > most else a
 
-    The response is k times the depth and nu times the approach of each point, never adhesive. Friction
-    is what brings the slip to zero by the end of the step, as far as mu N allows, so a cylinder rests
-    on a slope without creeping; found by passes over the points, each with what the others do
-    (projected Gauss-Seidel).
+
+@inner
+def turned(axis, J, a):
+    """Return the angular acceleration that a torque a causes, both in the lab."""
+    return plus(times(1.0 / J[0], a), (1.0 / J[2] - 1.0 / J[0]) * dot(axis, a), axis)
+
+
+@inner
+def rub(dt, contact, mu, n, axis, mass, J, ahead, spin):
+    """Find the friction at the points of contact: what ends their slip with this step, as far as mu N allows.
+
+    So a cylinder rests on a slope without creeping. ``ahead`` and ``spin`` are its velocities after a
+    step without friction. Passes over the points, each with what the others do (projected Gauss-Seidel).
     """
-    velocity, spin = vector(v), to_lab(Q, vector(w))
-    height = dot(plus(vector(x), -1.0, origin), n)
-    touching = False
     for number in range(POINTS):
-        arm = rim(Q, length, radius, n, number)
-        depth = -height - dot(arm, n)
-        N = stiffness * depth - damping * dot(plus(velocity, 1.0, cross(spin, arm)), n)
-        N = N if N > 0.0 and depth > 0.0 else 0.0
-        touching = touching or N > 0.0
-        contact[number, 0] = N
-        for a in range(1, 4):
-            contact[number, a] = 0.0
-        add(force, N, n)
-        add(torque, N, to_material(Q, cross(arm, n)))
-    # (a step of no duration stops nothing)
-    if touching and friction > 0.0 and dt > 0.0:
-        rub(contact, friction, n, Q, length, radius, mass, J, velocity, vector(w), force, torque, dt)
-
-
-@inner
-def rub(contact, mu, n, Q, length, radius, mass, J, velocity, w, force, torque, dt):
-    """Add friction at the points of contact; ``contact`` holds their N and the force of friction found, (6, 4)."""
-    transport = cross((J[0] * w[0], J[1] * w[1], J[2] * w[2]), w)
+        friction = vector(contact[number, 1:])
+        ahead = plus(ahead, dt / mass, friction)
+        spin = plus(spin, dt, turned(axis, J, cross(vector(contact[number, 4:]), friction)))
     for _ in range(SWEEPS):
+        is_settled = True
         for number in range(POINTS):
-            most = mu * contact[number, 0]
+            point = contact[number]
+            most = mu * point[0]
             if most > 0.0:
-                arm = rim(Q, length, radius, n, number)
-                # the slip at the end of this step, as things stand
-                ahead = plus(velocity, dt / mass, vector(force))
-                turn = plus(vector(torque), 1.0, transport)
-                spin = to_lab(Q, (w[0] + dt * turn[0] / J[0], w[1] + dt * turn[1] / J[1], w[2] + dt * turn[2] / J[2]))
+                arm = vector(point[4:])
                 u = plus(ahead, 1.0, cross(spin, arm))
                 u = plus(u, -dot(u, n), n)
                 speed = norm(u)
                 if speed > 0.0:
                     # how far a unit of force against the slip changes it
-                    t = times(1.0 / speed, u)
-                    yields = 1.0 / mass + dot(cross(turned(Q, J, cross(arm, t)), arm), t)
-                    old = contact[number, 1], contact[number, 2], contact[number, 3]
-                    new = plus(old, -1.0 / (dt * yields), u)
-                    size = norm(new)
-                    new = times(most / size, new) if size > most else new
+                    lever = times(1.0 / speed, cross(arm, u))
+                    yields = 1.0 / mass + dot(lever, turned(axis, J, lever))
+                    old = vector(point[1:])
+                    new = within(most, plus(old, -1.0 / (dt * yields), u))
                     change = plus(new, -1.0, old)
-                    contact[number, 1], contact[number, 2], contact[number, 3] = new
-                    add(force, 1.0, change)
-                    add(torque, 1.0, to_material(Q, cross(arm, change)))
+                    point[1], point[2], point[3] = new
+                    ahead = plus(ahead, dt / mass, change)
+                    spin = plus(spin, dt, turned(axis, J, cross(arm, change)))
+                    is_settled = is_settled and norm(change) < SETTLED * most
+        if is_settled:
+            break

@@ -7,11 +7,10 @@ from math import cos, exp, sin
 
 import numpy as np
 
-from ..model import BLOCK, LEAD, RodContact
+from ..model import BLOCK, LEAD
 from .bodies import orthonormalise_bodies
 from .compiler import apart, entry, inner
 from .constraints import hold, move
-from .cylinders import cylinder_on_plane, rod_on_cylinder
 from .damping import decay, dilating_decay, drag, smooth
 from .ends import add_to
 from .flow import resist
@@ -19,9 +18,9 @@ from .hooks import call
 from .joints import join
 from .kinematics import orthonormalise
 from .loads import clear, clear_at, dead_force, dead_torque, external, external_at, viscosity, wave
+from .pairs import ground_bodies, touch_bodies, touch_rods
 from .plane import slide, slip, stick, to_nodes, touch
 from .rings import follow, hand_back
-from .rods import rods_on_rods
 from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows
 from .vectors import add, plus, times, to_material, vector
 
@@ -103,32 +102,6 @@ def dead_loads_on_bodies(loads, body_Q, body_force, body_torque):
 
 
 @apart
-def touch_bodies(model, contacts, state, force, torque):
-    """Add the forces between rods and rigid bodies that overlap."""
-    c, m, s = contacts, model.cylinders, state
-    for j in range(c.body.size):
-        b = c.body[j]
-        rod_on_cylinder(
-            np.uint64(c.span[j, 0]), np.uint64(c.span[j, 1]), s.x[0], s.v[0], s.Q[0], s.w[0], s.length[0], s.radius[0],
-            m.length[b], m.radius[b], c.stiffness[j], c.damping[j], c.friction[j], c.slip_damping[j], s.body_x[0, b],
-            s.body_v[0, b], s.body_Q[0, b], s.body_w[0, b], force, torque, s.body_force[0, b], s.body_torque[0, b],
-        )  # fmt: skip
-
-
-@apart
-def ground_bodies(model, scene, state, dt):
-    """Add what planes do to rigid bodies, after all other loads."""
-    m, s, p = model.cylinders, state, scene.body_planes
-    for j in range(scene.grounded.size):
-        b = scene.grounded[j]
-        cylinder_on_plane(
-            dt, vector(p.normal[j]), vector(p.origin[j]), p.stiffness[j], p.damping[j], p.kinetic_friction[j, 0],
-            m.length[b], m.radius[b], m.mass[b], m.inertia[b], s.body_x[0, b], s.body_v[0, b], s.body_Q[0, b],
-            s.body_w[0, b], s.body_contact[0, b], s.body_force[0, b], s.body_torque[0, b],
-        )  # fmt: skip
-
-
-@apart
 def external_loads(model, scene, state, control, hooks, n):
     """Collect in Control what acts on rods from outside, but the planes. Returns whether to stop."""
     time, Q, loads = state.time[0], state.Q[0], scene.dead_loads
@@ -152,15 +125,14 @@ def external_loads(model, scene, state, control, hooks, n):
     if scene.joints.stiffness.size > 0:
         join(scene.joints, state.x[0], state.v[0], Q, state.w[0], force, torque, state.body_x[0], state.body_v[0],
              state.body_Q[0], state.body_w[0], state.body_force[0], state.body_torque[0])  # fmt: skip
+    s = state
     if scene.body_contacts.body.size > 0:
-        touch_bodies(model, scene.body_contacts, state, force, torque)
-    contacts = scene.rod_contacts
-    for j in range(contacts.stiffness.size):
-        group = RodContact(True, contacts.stiffness[j], contacts.damping[j], 0.0, 0.0, contacts.rod_of,
-                           contacts.may_touch[j])  # fmt: skip
-        order = contacts.order[contacts.span[j, 0] : contacts.span[j, 1]]
-        rods_on_rods(group, order, state.scratch[0, 0], state.scratch[0, 1], state.x[0], state.v[0], Q, state.w[0],
-                     state.length[0], state.radius[0], force, torque)  # fmt: skip
+        bodies = s.body_x[0], s.body_v[0], s.body_Q[0], s.body_w[0], s.body_force[0], s.body_torque[0]
+        touch_bodies(n, scene.body_contacts, model.cylinders, s.scratch[0], s.x[0], s.v[0], Q, s.w[0], s.length[0],
+                     s.radius[0], bodies, force, torque)  # fmt: skip
+    if scene.rod_contacts.stiffness.size > 0:
+        touch_rods(n, scene.rod_contacts, s.scratch[0], s.x[0], s.v[0], Q, s.w[0], s.length[0], s.radius[0], force,
+                   torque)  # fmt: skip
     return answer(hooks.loads, time)
 
 
@@ -300,7 +272,11 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
             if scene.planes.stiffness.size > 0:
                 ground(model, scene, state)
             if scene.grounded.size > 0:
-                ground_bodies(model, scene, state, scheme.kicks[stage] * dt)
+                ground_bodies(
+                    scheme.kicks[stage] * dt, scene.body_planes, scene.grounded, scene.ground_friction, model.cylinders,
+                    state.body_x[0], state.body_v[0], state.body_Q[0], state.body_w[0], state.body_contact[0],
+                    state.body_force[0], state.body_torque[0],
+                )  # fmt: skip
             kick(model, state, 0, n, scheme.kicks[stage] * dt)
             if constrain_rates(scene, state, hooks) != 0:
                 return 1

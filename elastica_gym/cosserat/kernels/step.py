@@ -80,14 +80,20 @@ def applied(model, state, control, i, n, time):
 def contacts(model, state, i, n):
     """Add the loads of contact between rods and bodies in environment i, and the weight of bodies."""
     m, s = model, state
+    x, v, Q, w, length, radius = s.x[i], s.v[i], s.Q[i], s.w[i], s.length[i], s.radius[i]
     if m.cylinders.mass.size > 0:
+        bodies = s.body_x[i], s.body_v[i], s.body_Q[i], s.body_w[i], s.body_force[i], s.body_torque[i]
         weigh_bodies(m.cylinders.mass, m.gravity, s.body_force[i], s.body_torque[i])
-        rods_on_cylinders(n, s.x[i], s.v[i], s.Q[i], s.w[i], s.length[i], s.radius[i], m.cylinders, s.body_x[i],
-                          s.body_v[i], s.body_Q[i], s.body_w[i], s.force[i], s.torque[i], s.body_force[i],
-                          s.body_torque[i])  # fmt: skip
+        s.body_touch[i, :] = 0.0
+        rods_on_cylinders(n, s.scratch[i, 0], x, v, Q, w, length, radius, m.cylinders, bodies, s.force[i],
+                          s.torque[i], s.body_touch[i])  # fmt: skip
     if m.rod_contact.is_on:
-        rods_on_rods(m.rod_contact, s.order[i], s.scratch[i, 0], s.scratch[i, 1], s.x[i], s.v[i], s.Q[i], s.w[i],
-                     s.length[i], s.radius[i], s.force[i], s.torque[i])  # fmt: skip
+        begin, end, reach, last_far = s.scratch[i, 0], s.scratch[i, 1], s.scratch[i, 2], s.scratch[i, 3]
+        s.rod_touch[i, :] = 0.0
+        s.n_pairs[i] = rods_on_rods(
+            n, m.rod_contact, s.order[i], s.pairs[i], s.n_pairs[i], rows(s.listed_x[i]), s.listed_reach[i], begin, end,
+            reach, last_far, x, v, Q, w, length, radius, s.force[i], s.torque[i], s.rod_touch[i],
+        )  # fmt: skip
 
 
 @inner

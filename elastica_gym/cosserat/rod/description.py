@@ -196,6 +196,15 @@ class Rod:
         return 0.5 * (self.rest_length[1:] + self.rest_length[:-1])
 
     @property
+    def curvature(self) -> Array:
+        """Curvature and twist of the rod as described, which it keeps if it is its ``rest_kappa`` [1/m], (3, n - 1)."""
+        # imported here: it takes longer than all else that `import elastica_gym` does
+        from scipy.spatial.transform import Rotation
+
+        turns = np.einsum("ijk,ljk->kil", self.directors[..., 1:], self.directors[..., :-1])
+        return -Rotation.from_matrix(turns).as_rotvec().T / self.rest_voronoi_length
+
+    @property
     def area(self) -> Array:
         """Section A at rest [m^2], (n,)."""
         return np.pi * self.radius**2
