@@ -8,6 +8,7 @@ MuJoCo draws through EGL or OSMesa, which on Linux are packages of the system an
 import ctypes.util
 import os
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType, TracebackType
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cosserat.model import Array
-from .rollout import first_nodes
+from .rollout import Rollout, element_at, first_nodes
 
 Image = NDArray[np.uint8]
 Color = tuple[float, float, float]
@@ -26,6 +27,7 @@ Color = tuple[float, float, float]
 BODY: Color = (0.13, 0.47, 0.44)
 HEAD: Color = (0.92, 0.50, 0.15)
 TARGET: Color = (0.84, 0.27, 0.25)
+OBJECT: Color = (0.95, 0.86, 0.72)
 
 SUPERSAMPLING = 2
 """Pictures are drawn this many times larger and averaged down"""
@@ -78,12 +80,15 @@ class Figure:
         Radii of its elements [m], (M,) or a number.
     rgba : Array
         Colours from 0 to 1, (M, 4) or one for all.
+    is_flat : bool
+        Whether elements end flat, as cylinders, rather than round, as capsules.
     """
 
     begin: Array
     end: Array
     radii: Any
     rgba: Any
+    is_flat: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,10 +184,11 @@ class Stage:
         rgba = np.broadcast_to(np.asarray(figure.rgba, dtype=np.float32), (len(begin), 4))
         if scene.ngeom + len(begin) > scene.maxgeom:
             raise ValueError(f"figures must have at most {scene.maxgeom} elements together")
+        long = mujoco.mjtGeom.mjGEOM_CYLINDER if figure.is_flat else mujoco.mjtGeom.mjGEOM_CAPSULE
         for k in range(len(begin)):
             geom = scene.geoms[scene.ngeom]
             is_sphere = np.array_equal(begin[k], end[k])
-            kind = mujoco.mjtGeom.mjGEOM_SPHERE if is_sphere else mujoco.mjtGeom.mjGEOM_CAPSULE
+            kind = mujoco.mjtGeom.mjGEOM_SPHERE if is_sphere else long
             mujoco.mjv_initGeom(geom, kind, np.full(3, radii[k]), begin[k], np.eye(3).ravel(), rgba[k])
             geom.specular, geom.shininess = 0.3, 0.4
             if not is_sphere:
@@ -190,8 +196,32 @@ class Stage:
             scene.ngeom += 1
 
 
+def figures(rollout: Rollout, moment: int) -> list[Figure]:
+    """Return the figures of the animal, of the objects and of the target at one moment of a rollout."""
+    shown = [animal_of(rollout, moment), objects(rollout, moment)]
+    if rollout.target is not None:
+        shown.append(ball(rollout.target[moment], rollout.target_radius))
+    return shown
+
+
+def animal_of(rollout: Rollout, moment: int) -> Figure:
+    """Return the figure of the animal at one moment of a rollout, with a ball about a head that is a rod's end."""
+    return animal(
+        rollout.nodes[moment], rollout.radii[moment], rollout.elements_per_rod, head_node=rollout.head_node,
+        head=HEAD if rollout.head_is_an_end else None,
+    )  # fmt: skip
+
+
+def objects(rollout: Rollout, moment: int) -> Figure:
+    """Return the figure of the objects at one moment of a rollout."""
+    begin, end = rollout.objects()
+    return Figure(
+        begin=begin[moment], end=end[moment], radii=rollout.object_radius, rgba=(*OBJECT, 1.0), is_flat=True
+    )
+
+
 def animal(nodes: Array, radii: Array, elements_per_rod: tuple[int, ...] | None = None, *,
-           color: Color = BODY, head: Color | None = HEAD) -> Figure:  # fmt: skip
+           head_node: int = -1, color: Color = BODY, head: Color | None = HEAD) -> Figure:  # fmt: skip
     """Return the figure of an animal at one moment.
 
     Parameters
@@ -202,23 +232,40 @@ def animal(nodes: Array, radii: Array, elements_per_rod: tuple[int, ...] | None 
         Radii of its elements [m], (M,).
     elements_per_rod : tuple of int, optional
         Number of elements of each rod; all in one if omitted.
+    head_node : int
+        Which of the nodes is the head.
     color : tuple of float
-        Red, green and blue from 0 to 1, pale at the rear and full at the front.
+        Red, green and blue from 0 to 1, full at the head and paler the further from it along the body.
     head : tuple of float, optional
-        Colour of the last node, or None for no head.
+        Colour of a ball about the head, or None for none.
     """
     counts = elements_per_rod or (len(nodes) - 1,)
     if sum(counts) != len(radii) or sum(counts) + len(counts) != len(nodes):
         raise ValueError(f"{len(nodes)} nodes and {len(radii)} radii do not make rods of {counts} elements")
-    first = first_nodes(counts)
-    tint = np.concatenate([np.linspace(0.35, 0.0, n) for n in counts])[:, None]
+    first, at = first_nodes(counts), range(len(nodes))[head_node]
+    away = np.abs(first + 0.5 - at)
+    tint = 0.35 * (away / away.max())[:, None]
     rgba = np.ones((len(radii), 4))
     rgba[:, :3] = np.asarray(color) * (1.0 - tint) + tint
     begin, end, thick = nodes[first], nodes[first + 1], radii
     if head is not None:
-        begin, end = np.concatenate([begin, nodes[-1:]]), np.concatenate([end, nodes[-1:]])
-        thick, rgba = np.append(radii, 1.25 * radii[-1]), np.vstack([rgba, (*head, 1.0)])
+        begin, end = np.concatenate([begin, nodes[[at]]]), np.concatenate([end, nodes[[at]]])
+        thick, rgba = np.append(radii, 1.25 * radii[element_at(at, counts)]), np.vstack([rgba, (*head, 1.0)])
     return Figure(begin=begin, end=end, radii=thick, rgba=rgba)
+
+
+def trail(rollout: Rollout, moment: int) -> Figure:
+    """Return the figure of the way over which the head has come up to a moment, a line on the ground."""
+    thin = 0.2 * float(np.median(rollout.radii))
+    if moment < 1:
+        return line(np.zeros((1, 3)), thin)
+    # imported here: it takes longer than all else that `import elastica_gym` does
+    from scipy.interpolate import CubicSpline
+
+    # a smooth one through where it was at the ends of control steps, half sunk so that bodies are over it
+    fine = np.linspace(0, moment, 5 * moment + 1)
+    path = CubicSpline(np.arange(moment + 1), rollout.head[: moment + 1])(fine)
+    return line(path * [1.0, 0.0, 1.0] + [0.0, 0.3 * thin, 0.0], thin)
 
 
 def line(points: Array, radius: float, color: Color = HEAD) -> Figure:
@@ -232,24 +279,16 @@ def ball(centre: Array, radius: float, color: Color = TARGET, alpha: float = 0.6
     return Figure(begin=points, end=points, radii=radius, rgba=(*color, alpha))
 
 
-def render_frames(positions: Array, radii: Array, *, elements_per_rod: tuple[int, ...] | None = None,
-                  target: Array | None = None, target_radius: float | None = None, trail: bool = True,
+def render_frames(rollout: Rollout, moments: Sequence[int] | None = None, *, has_trail: bool = True,
                   camera: Camera | None = None, width: int = 960, height: int = 540) -> Image:  # fmt: skip
-    """Draw an animal on the ground, a frame for each moment.
+    """Draw moments of a rollout: the animal on the ground, objects and target, a frame for each moment.
 
     Parameters
     ----------
-    positions : Array
-        Positions of its nodes [m], lab frame with y up, (T, N, 3). The head is the last one.
-    radii : Array
-        Radii of its elements [m], (T, M) or (M,).
-    elements_per_rod : tuple of int, optional
-        Number of elements of each rod; all in one if omitted.
-    target : Array, optional
-        Where the target is [m], (3,) or (T, 3).
-    target_radius : float, optional
-        Its radius, by default a twentieth of the animal's length [m].
-    trail : bool
+    rollout : Rollout
+    moments : sequence of int, optional
+        Which moments; all if omitted.
+    has_trail : bool
         Whether to draw where the head has been.
     camera : Camera, optional
         By default one that sees everything from the first to the last frame.
@@ -261,27 +300,23 @@ def render_frames(positions: Array, radii: Array, *, elements_per_rod: tuple[int
     Image
         The frames, (T, height, width, 3) uint8.
     """
-    positions = np.asarray(positions, dtype=float)
-    if positions.ndim != 3 or positions.shape[2] != 3 or not len(positions):
-        raise ValueError(f"positions must have the shape (T, N, 3), not {positions.shape}")
-    counts = elements_per_rod or (positions.shape[1] - 1,)
-    radii = np.broadcast_to(radii, (len(positions), sum(counts)))
-    length = float(np.linalg.norm(np.diff(positions[0], axis=0), axis=1).sum())
-    seen = positions.reshape(-1, 3)
-    if target is not None:
-        target = np.broadcast_to(np.asarray(target, dtype=float), (len(positions), 3))
-        seen = np.concatenate([seen, target])
-    camera = camera or framing(seen, width / height)
-    frames = np.empty((len(positions), height, width, 3), dtype=np.uint8)
-    with Stage(width=width, height=height, unit=length) as stage:
-        for t, nodes in enumerate(positions):
-            figures = [animal(nodes, radii[t], counts)]
-            if trail and t:
-                figures.append(line(positions[: t + 1, -1], 0.25 * radii[t, -1]))
-            if target is not None:
-                figures.append(ball(target[t], target_radius or 0.05 * length))
-            frames[t] = stage.draw(figures, camera)
+    picked = list(range(len(rollout.step)) if moments is None else moments)
+    if not picked or not set(picked) <= set(range(len(rollout.step))):
+        raise ValueError(f"moments must be some from 0 to {len(rollout.step) - 1}, not {picked}")
+    camera = camera or framing(outline(rollout, picked), width / height)
+    frames = np.empty((len(picked), height, width, 3), dtype=np.uint8)
+    with Stage(width=width, height=height, unit=rollout.body_length) as stage:
+        for frame, moment in zip(frames, picked, strict=True):
+            shown = figures(rollout, moment)
+            frame[:] = stage.draw([*shown, trail(rollout, moment)] if has_trail else shown, camera)
     return frames
+
+
+def outline(rollout: Rollout, moments: Sequence[int]) -> Array:
+    """Return points (K, 3) that a picture of some moments of a rollout has to show [m]."""
+    picked = list(moments)
+    seen = [rollout.nodes, *rollout.objects()] + ([] if rollout.target is None else [rollout.target[:, None]])
+    return np.concatenate([points[picked].reshape(-1, 3) for points in seen])
 
 
 def framing(points: Array, aspect: float, *, azimuth: float = 0.0, elevation: float = -50.0) -> Camera:

@@ -5,10 +5,14 @@ A recording holds, on the timelines ``step`` and ``sim_time``:
 | entity | content |
 |---|---|
 | ``/ground`` | the ground, a solid slab whose upper side is a hair below the grid at y = 0 |
-| ``/animal/body`` | a solid capsule for each element, coloured by the force that the ground carries |
+| ``/animal/body`` | a solid capsule for each element, darker the more the ground carries, red where an object touches |
 | ``/animal/nodes`` | the nodes, inside the capsules |
-| ``/animal/head``, ``/animal/trail`` | the head and where it has been |
+| ``/animal/head`` | a ball about the head, if it is a rod's end |
+| ``/animal/trail`` | where the head has been |
+| ``/animal/direction`` | an arrow over the head where to go, if the goal has a direction |
 | ``/animal/normal_force`` | the force that the ground carries, by element [N] |
+| ``/animal/object_force`` | the normal force between objects and body, by element [N], if there are objects |
+| ``/objects`` | a solid cylinder for each object |
 | ``/target`` | a sphere that the head has to enter, if the task has a target |
 | ``/reward/<term>``, ``/return`` | weighted reward of each term, and the sum of all so far |
 | ``/activations/<direction>/<arm>`` | activations of an arm's muscles |
@@ -34,6 +38,11 @@ if TYPE_CHECKING:
 
 APPLICATION_ID = "elastica_gym"
 
+SCENE = (
+    "ground", "target", "objects", "animal/body", "animal/nodes", "animal/head", "animal/trail", "animal/direction",
+)  # fmt: skip
+"""Entities that the view of the scene shows"""
+
 GROUND = (226, 229, 225)
 GRID = (120, 130, 125, 90)
 BACKGROUND = (247, 248, 246)
@@ -41,6 +50,9 @@ TARGET = (214, 69, 65, 150)
 HEAD = (235, 127, 38)
 UNLOADED = np.array((178, 208, 196))
 LOADED = np.array((10, 88, 84))
+TOUCHED = np.array((214, 69, 65))
+OBJECT = (196, 174, 140)
+DIRECTION = (74, 163, 223)
 SERIES = ((74, 163, 223), (235, 127, 38), (126, 196, 150), (214, 69, 65), (178, 132, 207), (222, 198, 82))
 """Colours of reward terms"""
 LEVELS = ((235, 127, 38), (74, 163, 223), (126, 196, 150))
@@ -93,6 +105,8 @@ def write_recording(rollout: Rollout, path: str | Path) -> Path:
     stream.send_recording_name(rollout.name)
     _log_scene(stream, rollout)
     _log_animal(stream, rollout)
+    _log_head(stream, rollout)
+    _log_objects(stream, rollout)
     _log_series(stream, rollout)
     data = memory.read()
     if not data:
@@ -167,7 +181,9 @@ def _columns(stream: "rr.RecordingStream", rollout: Rollout, entity: str, column
 
 def _view_box(rollout: Rollout) -> tuple[Array, float]:
     """Return centre and width of what there is to see on the ground, (3,) and a length [m]."""
-    seen = [rollout.nodes.reshape(-1, 3)] + ([] if rollout.target is None else [rollout.target])
+    seen = [points.reshape(-1, 3) for points in (rollout.nodes, *rollout.objects())]
+    seen = [rollout.target, *seen] if rollout.target is not None else seen
+    seen = [points for points in seen if points.size]
     low = np.min([points.min(axis=0) for points in seen], axis=0)
     high = np.max([points.max(axis=0) for points in seen], axis=0)
     return 0.5 * (low + high), float(max(*(high - low), rollout.body_length))
@@ -195,35 +211,70 @@ def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
 
 
 def _log_animal(stream: "rr.RecordingStream", rollout: Rollout) -> None:
-    """Log the body, its head and the head's trail."""
+    """Log the body."""
     rr = _rerun()
     begin, end = rollout.segments()
     n_steps, n_elements = rollout.radii.shape
-    every = [n_elements] * n_steps
     body = rr.Capsules3D.columns(
         translations=begin.reshape(-1, 3),
         quaternions=rotations_from_z(end - begin).reshape(-1, 4),
         lengths=np.linalg.norm(end - begin, axis=-1).ravel(),
         radii=rollout.radii.ravel(),
-        colors=contact_colors(rollout.normal_force).reshape(-1, 3),
+        colors=contact_colors(rollout.normal_force, rollout.object_force).reshape(-1, 3),
     )
-    _columns(stream, rollout, "animal/body", body.partition(every))
+    _columns(stream, rollout, "animal/body", body.partition([n_elements] * n_steps))
     stream.log("animal/body", rr.Capsules3D.from_fields(fill_mode="solid"), static=True)
-
-    thick = float(rollout.radii.max())
     nodes = rr.Points3D.columns(positions=rollout.nodes.reshape(-1, 3)).partition([rollout.nodes.shape[1]] * n_steps)
     _columns(stream, rollout, "animal/nodes", nodes)
-    stream.log("animal/nodes", rr.Points3D.from_fields(radii=0.2 * thick, colors=[HEAD]), static=True)
-    _columns(stream, rollout, "animal/head", rr.Ellipsoids3D.columns(
-        centers=rollout.head, half_sizes=np.full_like(rollout.head, 1.5 * thick),
-    ))  # fmt: skip
-    stream.log("animal/head", rr.Ellipsoids3D.from_fields(colors=[HEAD], fill_mode="solid"), static=True)
+    stream.log("animal/nodes", rr.Points3D.from_fields(radii=0.2 * _thickness(rollout), colors=[HEAD]), static=True)
+
+
+def _log_head(stream: "rr.RecordingStream", rollout: Rollout) -> None:
+    """Log the head, its trail, and where it is to go."""
+    rr = _rerun()
+    thick, above = _thickness(rollout), 1.1 * rollout.head_radius.max()
+    if rollout.head_is_an_end:
+        ball = 1.5 * thick
+        above = ball + 0.1 * thick
+        _columns(stream, rollout, "animal/head", rr.Ellipsoids3D.columns(
+            centers=rollout.head, half_sizes=np.full_like(rollout.head, ball),
+        ))  # fmt: skip
+        stream.log("animal/head", rr.Ellipsoids3D.from_fields(colors=[HEAD], fill_mode="solid"), static=True)
 
     # a piece of the trail for each step; the blueprint shows all pieces up to now
-    path = rollout.head + np.array([0.0, 1.6 * thick, 0.0])
+    path = rollout.head + np.array([0.0, above, 0.0])
     pieces = np.stack([np.concatenate([path[:1], path[:-1]]), path], axis=1)
     _columns(stream, rollout, "animal/trail", rr.LineStrips3D.columns(strips=pieces))
     stream.log("animal/trail", rr.LineStrips3D.from_fields(radii=0.25 * thick, colors=[HEAD]), static=True)
+
+    if rollout.direction is not None:
+        arrows = rr.Arrows3D.columns(
+            origins=path + np.array([0.0, thick, 0.0]), vectors=0.2 * rollout.body_length * rollout.direction
+        )
+        _columns(stream, rollout, "animal/direction", arrows)
+        stream.log("animal/direction", rr.Arrows3D.from_fields(radii=0.25 * thick, colors=[DIRECTION]), static=True)
+
+
+def _log_objects(stream: "rr.RecordingStream", rollout: Rollout) -> None:
+    """Log the objects."""
+    rr = _rerun()
+    n_steps, n_objects = rollout.object_centre.shape[:2]
+    if not n_objects:
+        return
+    poses = rr.Cylinders3D.columns(
+        centers=rollout.object_centre.reshape(-1, 3),
+        quaternions=rotations_from_z(rollout.object_axis).reshape(-1, 4),
+    )
+    _columns(stream, rollout, "objects", poses.partition([n_objects] * n_steps))
+    shapes = rr.Cylinders3D.from_fields(
+        lengths=rollout.object_length, radii=rollout.object_radius, colors=[OBJECT], fill_mode="solid"
+    )
+    stream.log("objects", shapes, static=True)
+
+
+def _thickness(rollout: Rollout) -> float:
+    """Return the radius that most of the body has, the scale of lines and points [m]."""
+    return float(np.median(rollout.radii))
 
 
 def _log_series(stream: "rr.RecordingStream", rollout: Rollout) -> None:
@@ -238,7 +289,10 @@ def _log_series(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     for k, (term, values) in enumerate(rollout.rewards.items()):
         log(f"reward/{term}", values[:, None], [term], colors=[SERIES[k % len(SERIES)]])
     log("return", rollout.episode_return[:, None], ["return"], colors=[SERIES[0]])
-    log("animal/normal_force", rollout.normal_force, [f"element {k}" for k in range(rollout.normal_force.shape[1])])
+    elements = [f"element {k}" for k in range(rollout.normal_force.shape[1])]
+    log("animal/normal_force", rollout.normal_force, elements)
+    if rollout.object_length.size:
+        log("animal/object_force", rollout.object_force, elements)
     for group in activation_groups(rollout):
         members = [k for k, name in enumerate(rollout.activation_names) if name.startswith(f"{group}/")]
         names = [rollout.activation_names[k].rpartition("/")[2] for k in members]
@@ -252,13 +306,15 @@ def activation_groups(rollout: Rollout) -> list[str]:
     return list(dict.fromkeys(name.rpartition("/")[0] for name in rollout.activation_names))
 
 
-def contact_colors(normal_force: Array) -> Array:
-    """Return a colour for each element, pale where it hovers and dark under twice its mean load.
+def contact_colors(normal_force: Array, object_force: Array) -> Array:
+    """Return a colour for each element: pale where it hovers, dark under twice the mean load, red at objects.
 
     Parameters
     ----------
     normal_force : Array
         Force with which the ground carries each element [N], (T, M).
+    object_force : Array
+        Normal force between each element and the objects [N], (T, M).
 
     Returns
     -------
@@ -267,7 +323,8 @@ def contact_colors(normal_force: Array) -> Array:
     """
     mean = float(normal_force.mean())
     load = np.clip(normal_force / (2.0 * mean), 0.0, 1.0) if mean > 0.0 else np.zeros_like(normal_force)
-    return np.round(UNLOADED + load[..., None] * (LOADED - UNLOADED)).astype(np.uint8)
+    colors = UNLOADED + load[..., None] * (LOADED - UNLOADED)
+    return np.round(np.where(object_force[..., None] > 0.0, TOUCHED, colors)).astype(np.uint8)
 
 
 def rotations_from_z(vectors: Array) -> Array:
@@ -291,7 +348,7 @@ def _blueprint(rollout: Rollout) -> Any:
     centre, width = _view_box(rollout)
     scene = rrb.Spatial3DView(
         name=rollout.name,
-        contents=["/ground", "/target", "/animal/body", "/animal/nodes", "/animal/head", "/animal/trail"],
+        contents=[f"/{name}" for name in SCENE],
         overrides={"/animal/trail": [rrb.VisibleTimeRanges([from_start, from_first])]},
         background=BACKGROUND,
         line_grid=rrb.LineGrid3D(

@@ -20,7 +20,7 @@ Policy = Callable[[Array, Any], Array]
 
 @dataclass(frozen=True, kw_only=True)
 class Rollout:
-    """T moments of an animal: the start of an episode and the end of each control step.
+    """T moments of an animal and the C objects around it: the start of an episode and the end of each control step.
 
     Attributes
     ----------
@@ -40,8 +40,18 @@ class Rollout:
         Radii of elements [m], (T, M).
     normal_force : Array
         Force with which the ground carries each element [N], (T, M).
-    head : Array
-        Position of the head [m], (T, 3).
+    head_node : int
+        Which of the nodes is the head.
+    object_centre : Array
+        Centres of mass of the objects, which are cylinders [m], (T, C, 3).
+    object_axis : Array
+        Unit vectors along their axes, (T, C, 3).
+    object_length, object_radius : Array
+        [m], (C,) each.
+    object_force : Array
+        Normal force between each element and the objects [N], (T, M).
+    direction : Array or None
+        Horizontal unit vector in which the task has the animal go, (T, 3), where its goal has a direction.
     target : Array or None
         Position of the target [m], (T, 3), where the task has one.
     target_radius : float
@@ -62,12 +72,34 @@ class Rollout:
     nodes: Array
     radii: Array
     normal_force: Array
-    head: Array
+    head_node: int
+    object_centre: Array
+    object_axis: Array
+    object_length: Array
+    object_radius: Array
+    object_force: Array
+    direction: Array | None
     target: Array | None
     target_radius: float
     rewards: dict[str, Array]
     activations: Array
     activation_names: tuple[str, ...]
+
+    @property
+    def head(self) -> Array:
+        """Position of the head [m], (T, 3)."""
+        return self.nodes[:, self.head_node]
+
+    @property
+    def head_radius(self) -> Array:
+        """Radius of the body at the head [m], (T,)."""
+        return self.radii[:, element_at(self.head_node, self.elements_per_rod)]
+
+    @property
+    def head_is_an_end(self) -> bool:
+        """Whether the head is a rod's end, which looks like any other, rather than a part between two ends."""
+        ends = np.cumsum([n + 1 for n in self.elements_per_rod])
+        return self.head_node + 1 in ends or self.head_node in (0, *ends)
 
     @property
     def episode_return(self) -> Array:
@@ -84,11 +116,21 @@ class Rollout:
         first = first_nodes(self.elements_per_rod)
         return self.nodes[:, first], self.nodes[:, first + 1]
 
+    def objects(self) -> tuple[Array, Array]:
+        """Return the centres of the first and of the second end of each object [m], two of (T, C, 3)."""
+        half = 0.5 * self.object_length[:, None] * self.object_axis
+        return self.object_centre - half, self.object_centre + half
+
 
 def first_nodes(elements_per_rod: tuple[int, ...]) -> Index:
     """Return the node at which each element begins, for rods that follow one another, (M,)."""
     starts = np.cumsum([0, *(n + 1 for n in elements_per_rod)])
     return np.concatenate([start + np.arange(n) for start, n in zip(starts, elements_per_rod, strict=False)])
+
+
+def element_at(node: int, elements_per_rod: tuple[int, ...]) -> int:
+    """Return the element that begins at a node, or for a rod's last node the one that ends there."""
+    return max(int(np.searchsorted(first_nodes(elements_per_rod), node, side="right")) - 1, 0)
 
 
 class Recorder:
@@ -115,6 +157,7 @@ class Recorder:
         self._index = index
         self._nodes = np.concatenate([np.arange(s, s + n + 1) for s, n in spans])
         self._elements = np.concatenate([np.arange(s, s + n) for s, n in spans])
+        self._head_node = self._nodes.tolist().index(self.env.body.senses.head)
         self._root_section = np.concatenate([rod.radius * np.sqrt(rod.rest_length) for rod in self.env.body.rods])
         self._moments: list[dict[str, Array]] = []
         self._rewards: list[dict[str, float]] = []
@@ -128,18 +171,21 @@ class Recorder:
             What ``step`` returned; its ``reward_<term>`` arrays are the rewards. Omit it after ``reset``.
         """
         env, i, state = self.env, self._index, self.env.state
-        target = env.target
         lengths = np.linalg.norm(np.diff(state.x[i], axis=1), axis=0)[self._elements]
         moment = {
             "nodes": state.x[i].T[self._nodes],
             # at constant volume, of where the nodes are now: State.radius is of half a time step before
             "radii": self._root_section / np.sqrt(lengths),
             "normal_force": state.normal_force[i, self._elements],
-            "head": state.x[i, :, env.body.senses.head].copy(),
-            "target": np.full(3, np.nan) if target is None else np.array(target[i]),
+            "object_centre": state.body_x[i].copy(),
+            "object_axis": state.body_Q[i, :, 2].copy(),
+            "object_force": state.body_touch[i, self._elements],
+            "direction": _direction(env, i),
         }
-        if self._moments and not all(np.isfinite(moment[k]).all() for k in ("nodes", "radii", "normal_force")):
+        if self._moments and not all(np.isfinite(values).all() for values in moment.values()):
             moment = dict(self._moments[-1])
+        target = env.target
+        moment["target"] = np.full(3, np.nan) if target is None else np.array(target[i])
         moment["activations"] = np.array(env.activations[i], dtype=float)
         self._moments.append(moment)
         terms = {} if infos is None else {k[7:]: v[i] for k, v in infos.items() if k.startswith("reward_")}
@@ -160,13 +206,17 @@ class Recorder:
         series = {name: np.stack([m[name] for m in self._moments]) for name in self._moments[0]}
         step = np.arange(len(self._moments), dtype=np.int64)
         terms = dict.fromkeys(term for rewards in self._rewards for term in rewards)
-        target = series.pop("target")
+        target, direction = series.pop("target"), series.pop("direction")
         return Rollout(
             name=env.spec.id if env.spec else env.task.name,
             body_length=env.body.senses.length,
             elements_per_rod=tuple(env.body.model.n_elements.tolist()),
             step=step,
             sim_time=np.asarray(step * env.control_dt, dtype=np.float64),
+            head_node=self._head_node,
+            object_length=np.array([thing.length for thing in env.body.cylinders]),
+            object_radius=np.array([thing.radius for thing in env.body.cylinders]),
+            direction=direction if direction.size else None,
             target=None if np.isnan(target).any() else target,
             target_radius=0.05 * env.body.senses.length,
             rewards={term: np.array([r.get(term, 0.0) for r in self._rewards]) for term in terms},
@@ -212,6 +262,17 @@ def run_rollout(env: Any, policy: Policy, *, seed: int = 0, index: int = 0, **en
         recorder.capture(infos)
         done = bool(terminated[index] or truncated[index])
     return recorder.rollout()
+
+
+def _direction(env: "BatchEnv", i: int) -> Array:
+    """Return the direction of the goal that the animal sees, in the lab, (3,), or (0,) where it sees none."""
+    names = env.task.goal_names
+    if not {"goal/forward", "goal/right"} <= set(names):
+        return np.zeros(0)
+    seen, (hx, hz) = env.task.see_goal(env.situation())[i], env.pose.heading[i]
+    forward, right = seen[names.index("goal/forward")], seen[names.index("goal/right")]
+    size = max(float(np.hypot(forward, right)), 1e-9)
+    return np.array([forward * hx - right * hz, 0.0, forward * hz + right * hx]) / size
 
 
 def _batch(env: Any) -> "BatchEnv":

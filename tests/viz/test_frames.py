@@ -1,12 +1,13 @@
 import importlib.util
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from elastica_gym.viz import Camera, Stage, framing, render_frames, write_video
-from elastica_gym.viz.frames import animal
+from elastica_gym.viz import Camera, Figure, Stage, framing, render_frames, write_video
+from elastica_gym.viz.frames import animal, animal_of, figures, outline
 
 SIZE = {"width": 160, "height": 100}
 
@@ -25,8 +26,7 @@ def drawn(reach):
             pass
     except RuntimeError as error:
         pytest.skip(str(error))
-    picked = [0, len(reach.nodes) - 1]
-    return render_frames(reach.nodes[picked], reach.radii[picked], target=reach.target[0], **SIZE)
+    return render_frames(reach, [0, len(reach.step) - 1], **SIZE)
 
 
 def test_frames_show_a_moving_animal_and_a_target(drawn):
@@ -40,7 +40,7 @@ def test_frames_show_a_moving_animal_and_a_target(drawn):
     assert (animal_is[0] != animal_is[1]).any()
 
 
-def test_true_size(drawn, reach):
+def test_true_size(drawn):
     radius = 0.05
     nodes = np.array([[0.0, radius, 0.0], [0.2, radius, 0.0]])
     with Stage(**SIZE) as stage:
@@ -51,6 +51,35 @@ def test_true_size(drawn, reach):
     metres_per_pixel = 2 * (1.0 - radius) * np.tan(np.deg2rad(16.0)) / SIZE["height"]
     assert seen.any(axis=0).sum() * metres_per_pixel == pytest.approx(0.2 + 2 * radius, abs=0.03)
     assert seen.any(axis=1).sum() * metres_per_pixel == pytest.approx(2 * radius, abs=0.03)
+
+
+def test_objects_and_a_head_in_the_middle(drawn, octopus):
+    head, plain = animal_of(octopus, 0), replace(octopus, head_node=120)
+    assert len(head.begin) == 120
+    assert len(animal_of(plain, 0).begin) == 121
+    # full colour at the head, pale at both tips
+    assert head.rgba[:, 0].argmin() in (59, 60)
+    assert head.rgba[0, 0] == pytest.approx(head.rgba[-1, 0])
+    camera = framing(outline(octopus, [0]), 1.6)
+    with Stage(**SIZE, unit=octopus.body_length) as stage:
+        alone, both = stage.draw([head], camera), stage.draw(figures(octopus, 0), camera)
+    # the object is taller on the picture than thick
+    seen = np.abs(both.astype(int) - alone).max(axis=-1) > 40
+    assert seen.any(axis=1).sum() > seen.any(axis=0).sum() > 4
+
+
+def test_cylinders_end_flat(drawn):
+    ends = {"begin": np.array([[0.0, 0.0, 0.0]]), "end": np.array([[0.0, 0.4, 0.0]]), "radii": 0.1}
+    camera = Camera(look_at=(0.0, 0.3, 0.0), distance=2.0, elevation=0.0)
+    heights = []
+    with Stage(**SIZE) as stage:
+        empty = stage.draw([], camera)
+        for is_flat in (True, False):
+            figure = Figure(**ends, rgba=(0.0, 0.0, 0.0, 1.0), is_flat=is_flat)
+            seen = np.abs(stage.draw([figure], camera).astype(int) - empty).max(axis=-1) > 60
+            heights.append(seen.any(axis=1).sum())
+    metres_per_pixel = 2 * 2.0 * np.tan(np.deg2rad(16.0)) / SIZE["height"]
+    assert (heights[1] - heights[0]) * metres_per_pixel == pytest.approx(0.1, abs=0.03)
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 30.0, 200.0])
@@ -75,9 +104,10 @@ def test_video(drawn, tmp_path):
         write_video(drawn, path / "b.mp4")
 
 
-def test_bad_arguments():
-    with pytest.raises(ValueError, match=r"positions must have the shape \(T, N, 3\), not \(4, 3\)"):
-        render_frames(np.zeros((4, 3)), np.ones(3))
+def test_bad_arguments(forward):
+    for moments in ([], [41], [-1]):
+        with pytest.raises(ValueError, match="moments must be some from 0 to 40, not"):
+            render_frames(forward, moments)
     with pytest.raises(ValueError, match="width must be positive, not 0"):
         Stage(width=0)
     with pytest.raises(ValueError, match="4 nodes and 2 radii do not make rods"):

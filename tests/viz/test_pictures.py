@@ -21,11 +21,11 @@ def test_muscles(tmp_path):
     assert (tmp_path / "new" / "muscles.png").stat().st_size > 20_000
 
 
-def test_snake(tmp_path):
+def test_animals(tmp_path):
     image = pytest.importorskip("PIL.Image")
-    path = tmp_path / "snake.png"
-    done = run("make_picture.py", "--output", path, "--size", 320, 120)
+    path = tmp_path / "animals.png"
+    done = run("make_picture.py", "--output", path, "--size", 320, 120, "--duration", 1)
     if "pictures need MuJoCo" in done.stderr or "cannot draw offscreen" in done.stderr:
         pytest.skip(done.stderr)
     assert done.returncode == 0, done.stderr
-    assert image.open(path).size == (320, 120)
+    assert image.open(path).size == (320, 250)

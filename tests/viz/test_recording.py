@@ -16,10 +16,28 @@ rr = pytest.importorskip("rerun")
 
 @pytest.fixture(scope="module")
 def recording(forward, tmp_path_factory):
+    return written(forward, tmp_path_factory)
+
+
+@pytest.fixture(scope="module")
+def octopus_recording(octopus, tmp_path_factory):
+    return written(octopus, tmp_path_factory)
+
+
+def written(rollout, tmp_path_factory):
     with warnings.catch_warnings():
         # rerun only warns of what it cannot use
         warnings.simplefilter("error")
-        return write_recording(forward, tmp_path_factory.mktemp("viz") / "new" / "forward.rrd")
+        return write_recording(rollout, tmp_path_factory.mktemp("viz") / "new" / "rollout.rrd")
+
+
+def entities(path):
+    return {chunk.entity_path for chunk in rr.chunk.RrdReader(path).stream().to_chunks()}
+
+
+def axes(quaternions):
+    x, y, z, w = np.moveaxis(quaternions.astype(float), -1, 0)
+    return np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=-1)
 
 
 def column(path, entity, component):
@@ -29,10 +47,10 @@ def column(path, entity, component):
     return batch, batch.column(component)
 
 
-def test_reading_back_gives_the_same_positions(recording, forward):
-    times, nodes = read_positions(recording)
-    assert np.array_equal(nodes, forward.nodes.astype(np.float32))
-    assert times == pytest.approx(forward.sim_time, abs=1e-9)
+def test_reading_back_gives_the_same_positions(either, tmp_path_factory):
+    times, nodes = read_positions(written(either, tmp_path_factory))
+    assert np.array_equal(nodes, either.nodes.astype(np.float32))
+    assert times == pytest.approx(either.sim_time, abs=1e-9)
 
 
 def test_both_timelines(recording, forward):
@@ -51,10 +69,37 @@ def test_capsules_have_the_true_shape(recording, forward):
 
     assert read("radii").reshape(forward.radii.shape) == pytest.approx(forward.radii, rel=1e-6)
     assert np.array_equal(read("translations").reshape(begin.shape), begin.astype(np.float32))
-    q = read("quaternions").reshape(*begin.shape[:2], 4).astype(float)
-    x, y, z, w = np.moveaxis(q, -1, 0)
-    axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+    axis = axes(read("quaternions").reshape(*begin.shape[:2], 4))
     assert begin + axis * read("lengths").reshape(begin.shape[:2])[..., None] == pytest.approx(end, abs=1e-7)
+
+
+def test_objects_have_the_true_shape_place_and_axis(octopus_recording, octopus):
+    def read(component):
+        batch, values = column(octopus_recording, "/objects", f"Cylinders3D:{component}")
+        assert np.array_equal(batch.column("step").to_numpy(), octopus.step)
+        assert batch.column("sim_time").cast("int64").to_numpy() / 1e9 == pytest.approx(octopus.sim_time)
+        return values.flatten().flatten().to_numpy().reshape(len(octopus.step), 1, -1)
+
+    assert np.array_equal(read("centers"), octopus.object_centre.astype(np.float32))
+    assert axes(read("quaternions")) == pytest.approx(octopus.object_axis, abs=1e-6)
+    (shape,) = rr.chunk.RrdReader(octopus_recording).stream().filter(content="/objects", is_static=True).to_chunks()
+    for component, values in (("lengths", octopus.object_length), ("radii", octopus.object_radius)):
+        read_back = shape.to_record_batch().column(f"Cylinders3D:{component}").flatten().to_numpy()
+        assert read_back == pytest.approx(values)
+
+
+def test_touch_is_recorded(octopus_recording, octopus):
+    forces = column(octopus_recording, "/animal/object_force", "Scalars:scalars")[1].flatten().to_numpy()
+    assert np.array_equal(forces.reshape(octopus.object_force.shape), octopus.object_force)
+    assert forces.any()
+
+
+def test_what_there_is_none_of_is_not_logged(recording, octopus_recording):
+    assert {"/animal/head", "/animal/trail", "/animal/direction"} <= entities(recording)
+    assert not {"/objects", "/animal/object_force", "/target"} & entities(recording)
+    # the octopus's head is its thickest part: no ball is to be drawn over it
+    assert {"/objects", "/animal/object_force", "/animal/trail", "/animal/direction"} <= entities(octopus_recording)
+    assert "/animal/head" not in entities(octopus_recording)
 
 
 def test_series_are_all_there(recording, forward):
@@ -90,10 +135,13 @@ def test_ten_seconds_take_less_than_two_megabytes(tmp_path):
 
 
 def test_contact_colors():
-    colors = contact_colors(np.array([[0.0, 1.0, 2.0, 1.0]]))
+    loads, free = np.array([[0.0, 1.0, 2.0, 1.0]]), np.zeros((1, 4))
+    colors = contact_colors(loads, free)
     assert colors.shape == (1, 4, 3)
     assert (np.diff(colors[0, :3].astype(int), axis=0) < 0).all()
-    assert (contact_colors(np.zeros((2, 3))) == contact_colors(np.zeros((1, 1)))[0, 0]).all()
+    assert (contact_colors(free, free) == colors[0, 0]).all()
+    touched = contact_colors(loads, np.array([[0.0, 0.0, 3.0, 0.0]]))
+    assert (touched == colors).all(axis=-1).tolist() == [[True, True, False, True]]
 
 
 def test_rotation_to_the_opposite_direction():
@@ -101,7 +149,7 @@ def test_rotation_to_the_opposite_direction():
 
 
 def test_two_rods(forward, tmp_path):
-    fewer = {name: getattr(forward, name)[:, :49] for name in ("radii", "normal_force")}
+    fewer = {name: getattr(forward, name)[:, :49] for name in ("radii", "normal_force", "object_force")}
     two = replace(forward, elements_per_rod=(20, 29), **fewer)
     path = write_recording(two, tmp_path / "two.rrd")
     assert len(column(path, "/animal/body", "Capsules3D:radii")[1][0]) == 49

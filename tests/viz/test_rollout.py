@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import gymnasium
 import numpy as np
 import pytest
@@ -26,12 +28,69 @@ def test_shapes_and_times(forward):
 
 def test_head_is_a_node_and_radii_are_those_of_the_body(forward):
     assert np.array_equal(forward.head, forward.nodes[:, -1])
+    assert forward.head_is_an_end
+    assert np.array_equal(forward.head_radius, forward.radii[:, -1])
     assert forward.radii == pytest.approx(0.00385, rel=0.01)
 
 
-def test_segments_skip_the_gap_between_rods(forward):
-    from dataclasses import replace
+def test_the_octopus_has_its_head_in_the_middle(octopus):
+    assert octopus.nodes.shape[1:] == (121, 3)
+    assert not octopus.head_is_an_end
+    assert np.array_equal(octopus.head, octopus.nodes[:, 60])
+    assert octopus.head_radius == pytest.approx(0.125, rel=0.05)
 
+
+def test_the_head_of_two_rods_may_end_either(octopus):
+    for node, is_end in ((0, True), (20, True), (21, True), (120, True), (19, False), (22, False)):
+        two = replace(octopus, elements_per_rod=(20, 99), radii=octopus.radii[:, :119], head_node=node)
+        assert two.head_is_an_end == is_end
+    two = replace(octopus, elements_per_rod=(20, 99), radii=octopus.radii[:, :119], head_node=21)
+    assert np.array_equal(two.head_radius, two.radii[:, 20])
+
+
+def test_objects_are_those_of_the_environment(octopus, forward):
+    assert forward.object_centre.shape == forward.object_axis.shape == (41, 0, 3)
+    assert not forward.object_force.any()
+    moments = len(octopus.step)
+    assert octopus.object_centre.shape == octopus.object_axis.shape == (moments, 1, 3)
+    begin, end = octopus.objects()
+    assert begin[0, 0] == pytest.approx(octopus.object_centre[0, 0] * [1.0, 0.0, 1.0], abs=1e-3)
+    assert end[0, 0, 1] == pytest.approx(octopus.object_length[0], abs=1e-3)
+    assert np.linalg.norm(octopus.object_axis, axis=-1) == pytest.approx(1.0)
+
+
+def test_touch_is_felt_where_the_object_is(octopus):
+    # the episode ends when they touch
+    assert octopus.sim_time[-1] < 1.0
+    touched = np.flatnonzero(octopus.object_force[-1])
+    assert touched.size
+    begin, _ = octopus.segments()
+    away = np.linalg.norm((begin[-1, touched] - octopus.object_centre[-1])[:, [0, 2]], axis=1)
+    assert (away < octopus.object_radius[0] + octopus.radii[-1, touched] + 0.01).all()
+
+
+def test_a_recorded_moment_stays_as_it_was():
+    env = gymnasium.make_vec("elastica_gym/OctopusReach-v0", num_envs=2, vectorization_mode="vector_entry_point")
+    env.reset(seed=0)
+    recorder = Recorder(env, 1).capture()
+    before = env.unwrapped.state.body_x[1].copy()
+    for name in ("x", "body_x", "body_Q", "body_touch", "normal_force"):
+        getattr(env.unwrapped.state, name)[:] = 7.0
+    rollout = recorder.rollout()
+    assert np.array_equal(rollout.object_centre[0], before)
+    assert not any((getattr(rollout, name) == 7.0).any() for name in ("nodes", "object_axis", "object_force"))
+
+
+def test_direction_is_the_one_that_the_task_commands(forward):
+    env = gymnasium.make_vec("elastica_gym/OctopusCrawl-v0", num_envs=1, vectorization_mode="vector_entry_point")
+    env.reset(seed=0)
+    goal = env.unwrapped.goal[0]
+    assert Recorder(env).capture().rollout().direction == pytest.approx(np.array([[goal[2], 0.0, goal[3]]]))
+    # the snake is to keep its first heading, whatever its heading is now
+    assert forward.direction == pytest.approx(np.broadcast_to(forward.direction[0], (41, 3)))
+
+
+def test_segments_skip_the_gap_between_rods(forward):
     two = replace(forward, elements_per_rod=(20, 29), radii=forward.radii[:, :49])
     begin, end = two.segments()
     assert begin.shape == end.shape == (41, 49, 3)
