@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..cosserat import Cylinder, Model, Rod, State, advance, at_rest
+from ..cosserat import Model, Rod, State, advance, at_rest
 from ..cosserat.kernels.compiler import entry, inline
 from ..cosserat.kernels.contact import overlap
 from ..cosserat.kernels.vectors import column, plus, times, to_lab, vector
 from ..cosserat.model import Array, Index
+from ..cosserat.surroundings import Cylinder
 from ..muscles import Muscles
 
 

@@ -14,8 +14,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..cosserat import Contact, Cylinder, Plane, Rod, build_model
+from ..cosserat import Rod, build_model
 from ..cosserat.model import Array
+from ..cosserat.surroundings import Contact, Cylinder, Plane
 from ..muscles import N_ACTIVATIONS, OCTOPUS, couple_matrix
 from .body import Body, Senses
 

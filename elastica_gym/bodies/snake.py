@@ -13,7 +13,8 @@ import functools
 
 import numpy as np
 
-from ..cosserat import Plane, Rod, build_model, stable_time_step
+from ..cosserat import Rod, build_model, stable_time_step
+from ..cosserat.surroundings import Plane
 from ..muscles import N_ACTIVATIONS, SNAKE, couple_matrix
 from .body import Body, Senses
 

@@ -1,12 +1,162 @@
-"""Cosserat rods: the physics, which knows nothing of reinforcement learning."""
+"""Cosserat rods: the physics, which knows nothing of reinforcement learning.
 
+Two ways lead to the same compiled step. The environments describe rods and surroundings, build a
+`Model`, and `advance` a batch of states. Scripts write a simulator in the names of PyElastica:
+a class of `BaseSystemCollection` and its features, rods, loads, constraints, ``finalize`` and `integrate`.
+"""
+
+from ._calculus import (
+    difference_kernel,
+    difference_kernel_for_block_structure,
+    position_average,
+    position_difference_kernel,
+    quadrature_kernel,
+    quadrature_kernel_for_block_structure,
+)
+from ._linalg import levi_civita_tensor
 from .assembly import at_rest, build_model
+from .boundary_conditions import (
+    ConstraintBase,
+    FixedConstraint,
+    FreeBC,
+    FreeRod,
+    GeneralConstraint,
+    HelicalBucklingBC,
+    OneEndFixedBC,
+    OneEndFixedRod,
+)
+from .callback_functions import CallBackBaseClass, ExportCallBack, MyCallBack
+from .contact_forces import (
+    CylinderPlaneContact,
+    NoContact,
+    RodCylinderContact,
+    RodPlaneContact,
+    RodPlaneContactWithAnisotropicFriction,
+    RodRodContact,
+    RodSelfContact,
+    RodSphereContact,
+)
+from .dissipation import AnalyticalLinearDamper, DamperBase, LaplaceDissipationFilter, RayleighDissipation
+from .external_forces import (
+    EndpointForces,
+    EndpointForcesSinusoidal,
+    GravityForces,
+    MuscleTorques,
+    NoForces,
+    UniformForces,
+    UniformTorques,
+)
+from .interaction import AnisotropicFrictionalPlane, InteractionPlane, SlenderBodyTheory
+from .joint import (
+    BallJoint,
+    ConnectionBase,
+    ExternalContact,
+    FixedJoint,
+    FreeJoint,
+    HingeJoint,
+    SelfContact,
+    SphericalJoint,
+)
 from .kernels.step import advance
 from .model import Control, Model, State, make_control, make_state
+from .modules import BaseSystemCollection, CallBacks, Connections, Constraints, Contact, Damping, Forcing
+from .restart import load_state, save_state
+from .rigidbody import Cylinder, RigidBodyBase, Sphere
 from .rod import Rod, stable_time_step
-from .surroundings import Contact, Cylinder, Plane, Wave
+from .rod.cosserat_rod import CosseratRod
+from .rod.knot_theory import KnotTheory, compute_link, compute_twist, compute_writhe
+from .rod.rod_base import RodBase
+from .surface import Plane
+from .surroundings import Wave
+from .timestepper import extend_stepper_interface, integrate
+from .timestepper.symplectic_steppers import PEFRL, PositionVerlet
+from .transformations import inv_skew_symmetrize, rotate
+from .utils import isqrt
 
 __all__ = [
-    "Contact", "Control", "Cylinder", "Model", "Plane", "Rod", "State", "Wave",
-    "advance", "at_rest", "build_model", "make_control", "make_state", "stable_time_step",
+    "PEFRL",
+    "AnalyticalLinearDamper",
+    "AnisotropicFrictionalPlane",
+    "BallJoint",
+    "BaseSystemCollection",
+    "CallBackBaseClass",
+    "CallBacks",
+    "ConnectionBase",
+    "Connections",
+    "ConstraintBase",
+    "Constraints",
+    "Contact",
+    "Control",
+    "CosseratRod",
+    "Cylinder",
+    "CylinderPlaneContact",
+    "DamperBase",
+    "Damping",
+    "EndpointForces",
+    "EndpointForcesSinusoidal",
+    "ExportCallBack",
+    "ExternalContact",
+    "FixedConstraint",
+    "FixedJoint",
+    "Forcing",
+    "FreeBC",
+    "FreeJoint",
+    "FreeRod",
+    "GeneralConstraint",
+    "GravityForces",
+    "HelicalBucklingBC",
+    "HingeJoint",
+    "InteractionPlane",
+    "KnotTheory",
+    "LaplaceDissipationFilter",
+    "Model",
+    "MuscleTorques",
+    "MyCallBack",
+    "NoContact",
+    "NoForces",
+    "OneEndFixedBC",
+    "OneEndFixedRod",
+    "Plane",
+    "PositionVerlet",
+    "RayleighDissipation",
+    "RigidBodyBase",
+    "Rod",
+    "RodBase",
+    "RodCylinderContact",
+    "RodPlaneContact",
+    "RodPlaneContactWithAnisotropicFriction",
+    "RodRodContact",
+    "RodSelfContact",
+    "RodSphereContact",
+    "SelfContact",
+    "SlenderBodyTheory",
+    "Sphere",
+    "SphericalJoint",
+    "State",
+    "UniformForces",
+    "UniformTorques",
+    "Wave",
+    "advance",
+    "at_rest",
+    "build_model",
+    "compute_link",
+    "compute_twist",
+    "compute_writhe",
+    "difference_kernel",
+    "difference_kernel_for_block_structure",
+    "extend_stepper_interface",
+    "integrate",
+    "inv_skew_symmetrize",
+    "isqrt",
+    "levi_civita_tensor",
+    "load_state",
+    "make_control",
+    "make_state",
+    "position_average",
+    "position_difference_kernel",
+    "quadrature_kernel",
+    "quadrature_kernel_for_block_structure",
+    "rotate",
+    "save_state",
+    "stable_time_step",
 ]  # fmt: skip

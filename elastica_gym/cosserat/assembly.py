@@ -1,6 +1,6 @@
 """From a description of rods and surroundings to a Model, and a State at rest."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,12 +23,12 @@ from .model import (
     make_control,
     make_state,
 )
-from .rod import Rod, require_finite, require_not_negative
-from .surroundings import Contact, Cylinder, Plane, Wave
+from .rod import Continuum, require_finite, require_not_negative
+from .surroundings import Contact, Cylinder, Plane, Wave, net_couple
 
 
 def build_model(
-    rods: Sequence[Rod], *, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
+    rods: Sequence[Continuum], *, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
     gravity: ArrayLike = (0.0, 0.0, 0.0), activation_time: float = 0.0, is_loaded: bool = False,
     is_balanced: bool = False,
     cylinders: Sequence[Cylinder] = (), rod_contact: Contact | None = None,
@@ -37,7 +37,7 @@ def build_model(
 
     Parameters
     ----------
-    rods : sequence of Rod
+    rods : sequence of Rod, or of what has its attributes
         At least one.
     planes : sequence of Plane
         Touched by all rods.
@@ -79,11 +79,11 @@ def build_model(
     fields |= {name: aligned_zeros((rows, slots)) for name, rows in _ROWS.items()}
     fields["inv_rest_length"][:] = fields["inv_rest_voronoi_length"][:] = 1.0
     for rod, start in zip(rods, first, strict=True):
-        _lay_out(fields, rod, int(start))
+        lay_out(fields, rod, int(start))
     return Model(
         first_slot=first.astype(np.int64), n_elements=counts.astype(np.int64), **fields,
         gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_viscous=bool(fields["viscosity"].any()),
-        is_balanced=is_balanced, activation_time=float(activation_time), planes=_plane_table(planes),
+        is_balanced=is_balanced, activation_time=float(activation_time), planes=plane_table(planes),
         waves=_wave_table(waves, rods, first, slots), cylinders=_cylinder_table(cylinders),
         rod_contact=_rod_contact(rod_contact, rods, first, slots),
     )  # fmt: skip
@@ -94,7 +94,7 @@ _SCALAR = ("rest_length", "inv_rest_length", "rest_voronoi_length", "inv_rest_vo
 _ROWS = {"shear": 3, "bend": 3, "inertia": 3, "inv_inertia": 3, "share": 2, "weight": 2, "viscosity": 2}
 
 
-def _lay_out(fields: dict[str, Array], rod: Rod, start: int) -> None:
+def lay_out(fields: Mapping[str, Array], rod: Continuum, start: int) -> None:
     """Write a rod's constants into its slots."""
     n = rod.n_elements
     nodes, elements, voronoi = slice(start, start + n + 1), slice(start, start + n), slice(start, start + n - 1)
@@ -102,20 +102,22 @@ def _lay_out(fields: dict[str, Array], rod: Rod, start: int) -> None:
     share = np.full((2, n), 0.5)
     share[0, 0] = share[1, -1] = 1.0
     for name, where, value in (
-        ("mass", nodes, m), ("inv_mass", nodes, 1.0 / m), ("damping_rate", nodes, rod.damping_rate),
+        ("mass", nodes, m), ("inv_mass", nodes, rod.inv_nodal_mass), ("damping_rate", nodes, rod.damping_rate),
         ("rest_length", elements, rod.rest_length), ("inv_rest_length", elements, 1.0 / rod.rest_length),
         ("volume_root", elements, rod.radius * np.sqrt(rod.rest_length)),
         ("shear", elements, rod.shear_stiffness), ("inertia", elements, rod.inertia),
-        ("inv_inertia", elements, 1.0 / rod.inertia), ("share", elements, share),
+        ("inv_inertia", elements, rod.inv_inertia), ("share", elements, share),
         ("weight", elements, np.stack([m[:-1], m[1:]]) / (m[:-1] + m[1:])),
-        ("viscosity", elements, np.array([[rod.viscosity], [rod.torque_viscosity]])),
+        ("viscosity", elements, [np.broadcast_to(nu, n) for nu in (rod.viscosity, rod.torque_viscosity)]),
         ("rest_voronoi_length", voronoi, rod.rest_voronoi_length),
         ("inv_rest_voronoi_length", voronoi, 1.0 / rod.rest_voronoi_length), ("bend", voronoi, rod.bend_stiffness),
     ):  # fmt: skip
         fields[name][..., where] = value
 
 
-def _plane_table(planes: Sequence[Plane]) -> Planes:
+def plane_table(planes: Sequence[Plane]) -> Planes:
+    """Return the table of planes, their normals of unit length."""
+
     def column(name: str, width: int) -> Array:
         values = np.array([getattr(plane, name) for plane in planes], dtype=np.float64)
         return values.reshape((len(planes), width) if width > 1 else len(planes))
@@ -129,15 +131,14 @@ def _plane_table(planes: Sequence[Plane]) -> Planes:
     )  # fmt: skip
 
 
-def _wave_table(waves: Sequence[Wave], rods: Sequence[Rod], first: np.ndarray, slots: int) -> Waves:
+def _wave_table(waves: Sequence[Wave], rods: Sequence[Continuum], first: np.ndarray, slots: int) -> Waves:
     sine, cosine = aligned_zeros((len(waves), slots)), aligned_zeros((len(waves), slots))
     for row, wave in enumerate(waves):
         if not 0 <= wave.rod < len(rods):
             raise ValueError(f"wave {row} is on rod {wave.rod}, but there are rods 0 to {len(rods) - 1}")
         n, start = rods[wave.rod].n_elements, int(first[wave.rod])
         for table, couple in zip((sine, cosine), wave.profiles(rods[wave.rod].rest_length), strict=True):
-            # an element gets the couple of the joint before it, and minus that of the joint after it
-            table[row, start : start + n] = -np.diff(couple, prepend=0.0, append=0.0)
+            table[row, start : start + n] = net_couple(couple)
     return Waves(
         axis=np.array([wave.axis for wave in waves], dtype=np.float64).reshape(len(waves), 3), sine=sine, cosine=cosine,
         angular_frequency=np.array([2.0 * np.pi / wave.period for wave in waves], dtype=np.float64),
@@ -161,7 +162,7 @@ def _cylinder_table(cylinders: Sequence[Cylinder]) -> Cylinders:
     )  # fmt: skip
 
 
-def _rod_contact(contact: Contact | None, rods: Sequence[Rod], first: np.ndarray, slots: int) -> RodContact:
+def _rod_contact(contact: Contact | None, rods: Sequence[Continuum], first: np.ndarray, slots: int) -> RodContact:
     last_other, last_clear = aligned_zeros((slots,)), aligned_zeros((slots,))
     for rod, start in zip(rods, first, strict=True):
         here = slice(start, start + rod.n_elements)
@@ -174,7 +175,7 @@ def _rod_contact(contact: Contact | None, rods: Sequence[Rod], first: np.ndarray
     )  # fmt: skip
 
 
-def _last_clear(rod: Rod) -> Index:
+def _last_clear(rod: Continuum) -> Index:
     """Return the last element before each at and before which none is too near to touch it, -1 for none, (n,).
 
     Too near is what is nearer along the rod than half a turn about the surface of a rod of their mean radius.
@@ -186,7 +187,7 @@ def _last_clear(rod: Rod) -> Index:
 
 
 def at_rest(
-    model: Model, rods: Sequence[Rod], n_envs: int = 1, *, cylinders: Sequence[Cylinder] = ()
+    model: Model, rods: Sequence[Continuum], n_envs: int = 1, *, cylinders: Sequence[Cylinder] = ()
 ) -> tuple[State, Control]:
     """Allocate State and Control, with every rod and cylinder where it was described, at rest, in all environments.
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .model import Array
 from .rod import require_finite, require_not_negative, require_positive
@@ -206,14 +207,34 @@ class Wave:
 
     def profiles(self, rest_length: Array) -> tuple[Array, Array]:
         """Return what multiplies sin and cos of 2 pi t/period: the couple at Voronoi points [N m], (n - 1,) each."""
-        # imported here: it takes longer than all else that `import elastica_gym` does
-        from scipy.interpolate import BSpline
-
         s = np.cumsum(rest_length) / np.sum(rest_length)
-        b = np.asarray(self.coefficients, dtype=np.float64)
-        knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, len(b) - 2), np.ones(3)])
-        # rounding in the sum must not leave the spline's domain
-        beta = BSpline(knots, b, 3)(np.clip(s, 0.0, 1.0))
-        angle = self.phase - self.wave_number * s
-        sine, cosine = (beta * f(angle) for f in (np.cos, np.sin))
-        return sine[::-1][1:], cosine[::-1][1:]
+        return wave_profiles(s, beta_spline(self.coefficients, s), self.wave_number, self.phase)
+
+
+def beta_spline(coefficients: ArrayLike, s: Array) -> Array:
+    """Return the cubic B-spline with control ``coefficients``, at least four, at arc lengths ``s`` from 0 to 1."""
+    # imported here: it takes longer than all else that `import elastica_gym` does
+    from scipy.interpolate import BSpline
+
+    b = np.asarray(coefficients, dtype=np.float64)
+    knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, len(b) - 2), np.ones(3)])
+    # rounding in the sum must not leave the spline's domain
+    return BSpline(knots, b, 3)(np.clip(s, 0.0, 1.0))
+
+
+def wave_profiles(s: Array, beta: Array, wave_number: float, phase: float) -> tuple[Array, Array]:
+    """Return what multiplies sin and cos of omega t in a travelling wave: couples at Voronoi points, (n - 1,) each.
+
+    The couple is beta sin(omega t - k s + phase), taken in reverse order along the rod.
+    """
+    angle = phase - wave_number * s
+    sine, cosine = (beta * f(angle) for f in (np.cos, np.sin))
+    return sine[::-1][1:], cosine[::-1][1:]
+
+
+def net_couple(couple: Array) -> Array:
+    """Return what couples at Voronoi points come to on elements, (n - 1,) to (n,).
+
+    An element gets the couple of the joint before it, and minus that of the joint after it.
+    """
+    return -np.diff(couple, prepend=0.0, append=0.0)

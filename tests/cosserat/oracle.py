@@ -12,20 +12,9 @@ import numpy as np
 from elastica._contact_functions import _calculate_contact_forces_rod_cylinder, _calculate_contact_forces_rod_rod
 from elastica.contact_utils import _find_min_dist
 
-from elastica_gym.cosserat import (
-    Contact,
-    Control,
-    Cylinder,
-    Model,
-    Plane,
-    Rod,
-    State,
-    Wave,
-    advance,
-    at_rest,
-    build_model,
-)
+from elastica_gym.cosserat import Control, Model, Rod, State, Wave, advance, at_rest, build_model
 from elastica_gym.cosserat.model import Array
+from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
 
 from .scenes import disturb, disturb_body, motion
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from elastica_gym.cosserat import Contact, Cylinder, Plane, Rod, State, Wave
+from elastica_gym.cosserat import Rod, State, Wave
 from elastica_gym.cosserat.model import Array, Model
+from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
 from elastica_gym.muscles import DIRECTIONS, Muscles
 
 LENGTH = 0.35

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from elastica_gym.cosserat import Contact, Cylinder, Rod, advance, at_rest, build_model
+from elastica_gym.cosserat import Rod, advance, at_rest, build_model
 from elastica_gym.cosserat.model import Array, State
+from elastica_gym.cosserat.surroundings import Contact, Cylinder
 
 from .scenes import loop, without_contact
 

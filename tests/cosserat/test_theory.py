@@ -5,12 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elastica_gym.cosserat import Plane, Rod, advance, at_rest, build_model, stable_time_step
+from elastica_gym.cosserat import Rod, advance, at_rest, build_model, stable_time_step
 from elastica_gym.cosserat.kernels.rotations import (
     half_angle_over_sine,
     sine_over_angle,
     versine_over_angle_squared,
 )
+from elastica_gym.cosserat.surroundings import Plane
 
 from .scenes import GRAVITY, TIME_STEP, WAVE, disturb, ground, kinked, motion, rotations, snake
 

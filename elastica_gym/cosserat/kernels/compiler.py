@@ -39,6 +39,8 @@ from ..model import LEAD
 
 CACHE_VARIABLE = "ELASTICA_GYM_CACHE_DIR"
 KERNELS = Path(__file__).parent
+# all that kernels see of the rest is in these
+TABLES = ("model.py", "scene.py")
 
 # Slots are counted with unsigned integers: a signed index may be negative, which Numba's wrap-around
 # must then handle, and loops do not vectorise where LLVM cannot prove that it is not.
@@ -120,7 +122,7 @@ def cache_folder() -> Path:
     key = hashlib.sha256()
     for part in (_package_version(), numba.__version__, llvmlite.__version__, sys.version, _cpu()):
         key.update(part.encode() + b"\0")
-    for source in sorted((KERNELS.parent).rglob("*.py")):
+    for source in sorted([*KERNELS.glob("*.py"), *(KERNELS.parent / name for name in TABLES)]):
         key.update(source.read_bytes())
     name = key.hexdigest()[:20]
     home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")

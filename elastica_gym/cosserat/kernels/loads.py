@@ -2,7 +2,7 @@
 
 from math import cos, sin
 
-from .compiler import FIRST, ONE, stage
+from .compiler import FIRST, ONE, inner, stage
 
 
 @stage
@@ -33,6 +33,51 @@ def external(n, applied_force, applied_torque, force, torque):
         torque[0][k] += applied_torque[0][k]
         torque[1][k] += applied_torque[1][k]
         torque[2][k] += applied_torque[2][k]
+
+
+@stage
+def clear(n, force, torque):
+    """Set loads to zero."""
+    for k in range(FIRST, n):
+        force[0][k] = force[1][k] = force[2][k] = 0.0
+        torque[0][k] = torque[1][k] = torque[2][k] = 0.0
+
+
+@inner
+def clear_at(slots, force, torque):
+    """Set loads in some slots to zero."""
+    for j in range(slots.size):
+        for d in range(3):
+            force[d, slots[j]] = torque[d, slots[j]] = 0.0
+
+
+@inner
+def external_at(slots, applied_force, applied_torque, force, torque):
+    """Add the loads that Control holds in some slots."""
+    for j in range(slots.size):
+        k = slots[j]
+        for d in range(3):
+            force[d, k] += applied_force[d, k]
+            torque[d, k] += applied_torque[d, k]
+
+
+@stage
+def dead_force(n, load, force):
+    """Add forces that are constant in the lab."""
+    for k in range(FIRST, n):
+        force[0][k] += load[0][k]
+        force[1][k] += load[1][k]
+        force[2][k] += load[2][k]
+
+
+@stage
+def dead_torque(n, load, Q, torque):
+    """Add torques that are constant in the lab."""
+    for k in range(FIRST, n):
+        t0, t1, t2 = load[0][k], load[1][k], load[2][k]
+        torque[0][k] += Q[0][0][k] * t0 + Q[0][1][k] * t1 + Q[0][2][k] * t2
+        torque[1][k] += Q[1][0][k] * t0 + Q[1][1][k] * t1 + Q[1][2][k] * t2
+        torque[2][k] += Q[2][0][k] * t0 + Q[2][1][k] * t1 + Q[2][2][k] * t2
 
 
 @stage

@@ -2,15 +2,54 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .model import Array
+from ..model import Array
 
 # shear correction of a circular section (Kaneko 1975) at Poisson ratio 1/2
 SHEAR_CORRECTION = 27.0 / 28.0
+
+
+class Continuum(Protocol):
+    """What a Model needs to know of a rod. `Rod` describes each attribute."""
+
+    @property
+    def n_elements(self) -> int: ...  # noqa: D102
+    @property
+    def position(self) -> Array: ...  # noqa: D102
+    @property
+    def directors(self) -> Array: ...  # noqa: D102
+    @property
+    def radius(self) -> Array: ...  # noqa: D102
+    @property
+    def rest_kappa(self) -> Array: ...  # noqa: D102
+    @property
+    def rest_sigma(self) -> Array: ...  # noqa: D102
+    @property
+    def rest_length(self) -> Array: ...  # noqa: D102
+    @property
+    def rest_voronoi_length(self) -> Array: ...  # noqa: D102
+    @property
+    def shear_stiffness(self) -> Array: ...  # noqa: D102
+    @property
+    def bend_stiffness(self) -> Array: ...  # noqa: D102
+    @property
+    def nodal_mass(self) -> Array: ...  # noqa: D102
+    @property
+    def inv_nodal_mass(self) -> Array: ...  # noqa: D102
+    @property
+    def inertia(self) -> Array: ...  # noqa: D102
+    @property
+    def inv_inertia(self) -> Array: ...  # noqa: D102
+    @property
+    def damping_rate(self) -> float: ...  # noqa: D102
+    @property
+    def viscosity(self) -> float | Array: ...  # noqa: D102
+    @property
+    def torque_viscosity(self) -> float | Array: ...  # noqa: D102
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,27 +234,57 @@ class Rod:
         return np.append(half, 0.0) + np.insert(half, 0, 0.0)
 
     @property
+    def inv_nodal_mass(self) -> Array:
+        """One over it [1/kg], (n + 1,)."""
+        return 1.0 / self.nodal_mass
+
+    @property
     def inertia(self) -> Array:
         """Diagonal of J [kg m^2], (3, n)."""
         return self.density * self.rest_length * self.second_moment
 
+    @property
+    def inv_inertia(self) -> Array:
+        """Diagonal of 1/J [1/(kg m^2)], (3, n)."""
+        return 1.0 / self.inertia
 
-def stable_time_step(rod: Rod) -> float:
+
+class Convertible(Protocol):
+    """A rod of other names that can be described as a `Continuum`."""
+
+    def as_continuum(self) -> Continuum: ...  # noqa: D102
+
+
+def stable_time_step(rod: Continuum | Convertible) -> float:
     """Return the largest time step of position Verlet that is stable for a rod at rest [s].
 
     The highest frequency of a uniform rod is that of its shortest wave, in which neighbouring nodes
     and elements move oppositely: stretch, twist, and bending coupled to shear. Measured for r/l from
-    0.1 to 8 and G/Y from 0.33 to 3.3: stable at 0.98 of it and unstable at 1.02.
+    0.1 to 8 and G/Y from 0.33 to 3.3: stable at 0.98 of it and unstable at 1.02. For a rod that is
+    not uniform, each element counts with the stiffer of its neighbours.
+
+    Parameters
+    ----------
+    rod : Rod or CosseratRod
     """
-    l, r, rho = rod.rest_length, rod.radius, rod.density  # noqa: E741
-    Y, G, aG = rod.youngs_modulus, rod.shear_modulus, SHEAR_CORRECTION * rod.shear_modulus
-    p, q, s = aG / l**2, aG / r**2 + Y / l**2, aG / (l * r)
+    if hasattr(rod, "as_continuum"):
+        rod = rod.as_continuum()
+    l, S, J = rod.rest_length, rod.shear_stiffness, rod.inertia / rod.rest_length  # noqa: E741
+    B = np.maximum(*(np.insert(rod.bend_stiffness, end, 0.0, axis=1) for end in (0, l.size - 1)))
+    m = _mass_per_length(rod.nodal_mass, l)
+    p, q, s = S[:2] / (l**2 * m), (0.25 * S[:2] + B[:2] / l**2) / J[:2], 0.5 * S[:2] / (l * np.sqrt(m * J[:2]))
     bending = 0.5 * (p + q) + np.sqrt(0.25 * (p - q) ** 2 + s**2)
-    fastest = np.max([bending, Y / l**2, G / l**2]) / rho
+    fastest = np.max([bending.max(axis=0), S[2] / (l**2 * m), B[2] / (l**2 * J[2])])
     return float(1.0 / np.sqrt(fastest))
 
 
-def require_stable(rods: Sequence[Rod], time_step: float) -> None:
+def _mass_per_length(nodal_mass: Array, length: Array) -> Array:
+    """Return the mass per length of the lighter of each element's nodes [kg/m], (n,)."""
+    m = nodal_mass / (0.5 * (np.append(length, 0.0) + np.insert(length, 0, 0.0)))
+    return np.minimum(m[1:], m[:-1])
+
+
+def require_stable(rods: Sequence[Continuum], time_step: float) -> None:
     """Raise ValueError unless ``time_step`` is below that of every rod's `stable_time_step` [s]."""
     bound = min(stable_time_step(rod) for rod in rods)
     if not time_step < bound:

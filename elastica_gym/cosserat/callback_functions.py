@@ -1,0 +1,151 @@
+"""Callbacks: what looks at systems while a simulation runs."""
+
+import pickle
+import tempfile
+from collections import defaultdict
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+
+class CallBackBaseClass:
+    """Base class of callbacks; write your own by overriding `make_callback`.
+
+    One with an integer attribute ``every``, ``step_skip`` or ``sample_every`` is called at the multiples
+    of it, any other after every step; each at ``finalize`` too, with time 0 and step 0.
+    """
+
+    def make_callback(self, system: Any, time: float, current_step: int) -> None:
+        """Look at a system: ``time`` is now [s], ``current_step`` the number of steps since time 0."""
+
+    def on_close(self) -> None:
+        """Finish; ``simulator.close()`` calls it."""
+
+
+class MyCallBack(CallBackBaseClass):
+    """Appends time, step, position, directors and velocity to lists.
+
+    Parameters
+    ----------
+    step_skip : int
+        Steps from one to the next.
+    callback_params : dict
+        Of lists, such as ``defaultdict(list)``.
+    """
+
+    def __init__(self, step_skip: int, callback_params: dict) -> None:
+        if step_skip < 1:
+            raise ValueError(f"step_skip must be at least 1, not {step_skip}")
+        self.sample_every, self.callback_params = step_skip, callback_params
+
+    def make_callback(self, system: Any, time: float, current_step: int) -> None:
+        """Append copies of what is now."""
+        if current_step % self.sample_every == 0:
+            _append(self.callback_params, system, time, current_step)
+
+
+class ExportCallBack(CallBackBaseClass):
+    """Writes time, step, position, directors and velocity to numbered files.
+
+    Each file is written beside its place and then moved there, so that a run that is killed loses at
+    most what was collected since the last one. ``simulator.close()`` writes the rest.
+
+    Parameters
+    ----------
+    step_skip : int
+        Steps from one to the next.
+    filename : str
+        Start of the files' names, ``<filename>_<number>.<extension>``.
+    directory : str
+        Where to write; made if it is not there. Without it, ``path`` (or ``filename``) holds both.
+    method : str
+        One of ``AVAILABLE_METHOD``: pickle, npz, or pickle to a temporary file.
+    initial_file_count : int
+        Number of the first file.
+    file_save_interval : int
+        Steps after which a file is written; earlier if its arrays pass ``FILE_SIZE_CUTOFF`` bytes.
+    path : str
+        The seed's name for directory and name in one.
+    save_every : int
+        The seed's name for ``file_save_interval``.
+    """
+
+    AVAILABLE_METHOD: ClassVar[list[str]] = ["pickle", "npz", "tempfile"]
+    FILE_SIZE_CUTOFF = 32_000_000
+
+    def __init__(
+        self, step_skip: int, filename: str | None = None, directory: str | None = None, method: str | None = None,
+        initial_file_count: int = 0, file_save_interval: int = 100_000_000, *, path: str | None = None,
+        save_every: float | None = None,
+    ) -> None:  # fmt: skip
+        if method is None and directory in self.AVAILABLE_METHOD:
+            # the seed's order of arguments: step_skip, path, method
+            directory, method = None, directory
+        place = path if path is not None else filename
+        if place is None:
+            raise TypeError("filename is missing: where to write")
+        if method not in self.AVAILABLE_METHOD:
+            raise ValueError(f"method must be one of {self.AVAILABLE_METHOD}, not {method!r}")
+        interval = int(file_save_interval if save_every is None else save_every)
+        for name, value in (("step_skip", step_skip), ("file_save_interval", interval)):
+            if value < 1:
+                raise ValueError(f"{name} must be at least 1, not {value}")
+        self.step_skip, self.file_save_interval, self.method = step_skip, interval, method
+        self.file_count, self._first = initial_file_count, initial_file_count
+        self._stem = Path(directory, place) if directory is not None else Path(place)
+        self._stem.parent.mkdir(parents=True, exist_ok=True)
+        self._extension = "npz" if method == "npz" else "pkl"
+        self._temporary = Path(tempfile.mkstemp(suffix=".pkl")[1]) if method == "tempfile" else None
+        self.buffer: dict[str, list] = defaultdict(list)
+        self.buffer_size = 0
+        self._saved_at = 0
+
+    def make_callback(self, system: Any, time: float, current_step: int) -> None:
+        """Collect copies of what is now, and write a file when it is time."""
+        if current_step % self.step_skip == 0:
+            self.buffer_size += _append(self.buffer, system, time, current_step)
+        if self.buffer_size > self.FILE_SIZE_CUTOFF or current_step - self._saved_at >= self.file_save_interval:
+            self._dump()
+            self._saved_at = current_step
+
+    def get_last_saved_path(self) -> str | None:
+        """Return the path of the file that was written last, None if there is none."""
+        return None if self.file_count == self._first else str(self._path(self.file_count - 1))
+
+    def on_close(self) -> None:
+        """Write what is left."""
+        if self.buffer_size:
+            self._dump()
+
+    def _path(self, number: int) -> Path:
+        if self._temporary is not None:
+            return self._temporary
+        return self._stem.with_name(f"{self._stem.name}_{number:02d}.{self._extension}")
+
+    def _dump(self) -> None:
+        path = self._path(self.file_count)
+        data = {name: np.array(values) for name, values in self.buffer.items()}
+        unfinished = path.with_name(path.name + ".part")
+        with unfinished.open("wb") as file:
+            if self.method == "npz":
+                np.savez(file, **data)  # type: ignore[arg-type]
+            else:
+                pickle.dump(data, file)
+        unfinished.replace(path)
+        self.file_count += 1
+        self.buffer_size = 0
+        self.buffer.clear()
+
+
+def _append(lists: dict, system: Any, time: float, step: int) -> int:
+    """Append copies of a system's motion to lists, and return their size in bytes."""
+    lists["time"].append(time)
+    lists["step"].append(step)
+    size = 0
+    for name, attribute in (("position", "position_collection"), ("directors", "director_collection"),
+                            ("velocity", "velocity_collection")):  # fmt: skip
+        values = getattr(system, attribute).copy()
+        lists[name].append(values)
+        size += values.nbytes
+    return size

@@ -1,0 +1,174 @@
+"""Dampers: what takes energy out of a system at the end of each step."""
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+import numpy as np
+
+from .lowering import SceneBuilder
+from .model import Array
+from .rod.description import require_not_negative
+
+
+class DamperBase(ABC):
+    """Base class of dampers; write your own by overriding ``dampen_rates``.
+
+    ``simulator.dampen(system).using(cls, *args, **kwargs)`` makes one at ``finalize``.
+
+    Attributes
+    ----------
+    system
+        What is damped.
+    """
+
+    def __init__(self, *args: Any, _system: Any = None, **kwargs: Any) -> None:
+        if _system is not None:
+            self._system = _system
+
+    @property
+    def system(self) -> Any:  # noqa: D102
+        return self._system
+
+    @abstractmethod
+    def dampen_rates(self, system: Any, time: float) -> None:
+        """Change velocities and angular velocities. Called once in a step, after its last kick."""
+
+
+class AnalyticalLinearDamper(DamperBase):
+    """Exponential decay of velocities, exact for any time step.
+
+    Parameters
+    ----------
+    uniform_damping_constant : float
+        Of velocities and angular velocities alike [1/s].
+    translational_damping_constant, rotational_damping_constant : float
+        Together: gamma_t/m of nodes [kg/s], and e gamma_r/J of elements [kg m^2/s].
+    damping_constant : float
+        Alone, deprecated: a rate of velocities [1/s], and of angular velocities e m/J times that.
+    time_step : float
+        Of the simulation [s]. The one that it is run with counts; this one need not be given, but is
+        refused if it is not positive.
+    """
+
+    def __init__(
+        self, time_step: float | None = None, *, damping_constant: float | None = None,
+        uniform_damping_constant: float | None = None, translational_damping_constant: float | None = None,
+        rotational_damping_constant: float | None = None, **kwargs: Any,
+    ) -> None:  # fmt: skip
+        super().__init__(**kwargs)
+        if time_step is not None and not time_step > 0.0:
+            raise ValueError(f"time_step must be a positive number, not {time_step}")
+        self.time_step = time_step
+        given = {
+            "damping_constant": damping_constant, "uniform_damping_constant": uniform_damping_constant,
+            "translational_damping_constant": translational_damping_constant,
+            "rotational_damping_constant": rotational_damping_constant,
+        }  # fmt: skip
+        chosen = {name: float(value) for name, value in given.items() if value is not None}
+        if set(chosen) not in ({"damping_constant"}, {"uniform_damping_constant"},
+                               {"translational_damping_constant", "rotational_damping_constant"}):  # fmt: skip
+            raise ValueError("give uniform_damping_constant, or translational_damping_constant and "
+                             f"rotational_damping_constant, or damping_constant; not {sorted(chosen) or 'none'}")
+        for name, value in chosen.items():
+            require_not_negative(name, value)
+        self._constants = chosen
+
+    def _rates(self) -> tuple[Any, Any, Any]:
+        """Return the decay rates of nodes, of elements, and of elements per dilatation [1/s]."""
+        rod, c = self.system, self._constants
+        if "uniform_damping_constant" in c:
+            rate = c["uniform_damping_constant"]
+            return rate, rate, 0.0
+        inverse = np.einsum("iik->ik", rod.inv_mass_second_moment_of_inertia)
+        if "damping_constant" in c:
+            return c["damping_constant"], 0.0, c["damping_constant"] * _element_mass(rod) * inverse
+        return c["translational_damping_constant"] / rod.mass, 0.0, c["rotational_damping_constant"] * inverse
+
+    def dampen_rates(self, system: Any, time: float) -> None:
+        """Multiply velocities by their factors."""
+        if self.time_step is None:
+            raise ValueError("time_step is missing; AnalyticalLinearDamper needs it when a subclass calls it")
+        node, element, dilating = self._rates()
+        system.velocity_collection *= np.exp(-node * self.time_step)
+        system.omega_collection *= np.exp(-(element + dilating * system.dilatation) * self.time_step)
+
+    def lower(self, builder: SceneBuilder) -> None:
+        """Write rates."""
+        node, element, dilating = self._rates()
+        builder.add_decay(self.system, node_rate=node, element_rate=element, dilating_rate=dilating)
+
+
+class LaplaceDissipationFilter(DamperBase):
+    """Takes the shortest waves out of velocities and angular velocities, and leaves long ones alone.
+
+    What is taken is (-Laplacian/4)^order of them, with zero at the ends (Jeanmart and Winckelmans 2007).
+
+    Parameters
+    ----------
+    filter_order : int
+        How often the Laplacian is taken; the higher, the less is damped.
+    """
+
+    def __init__(self, filter_order: int, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        if not (isinstance(filter_order, int | np.integer) and filter_order > 0):
+            raise ValueError(f"filter_order must be a positive integer, not {filter_order}")
+        self.filter_order = int(filter_order)
+
+    def dampen_rates(self, system: Any, time: float) -> None:
+        """Subtract the filter's term."""
+        for rates in (system.velocity_collection, system.omega_collection):
+            term = rates.copy()
+            for _ in range(self.filter_order):
+                term[:, 1:-1] = 0.25 * (2.0 * term[:, 1:-1] - term[:, 2:] - term[:, :-2])
+                term[:, 0] = term[:, -1] = 0.0
+            rates -= term
+
+    def lower(self, builder: SceneBuilder) -> None:
+        """Write a filter."""
+        if self.system.ring_rod_flag:
+            raise NotImplementedError("LaplaceDissipationFilter acts on open rods; this one is a ring")
+        builder.add_filter(self.system, self.filter_order)
+
+
+class RayleighDissipation(DamperBase):
+    """Drag on nodes and elements: nu l v and nu l w, with l the mean element length; half at the end nodes.
+
+    Parameters
+    ----------
+    damping_constant : float
+        nu [kg/(m s)], and for torques [kg m/s].
+    """
+
+    def __init__(self, damping_constant: float, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        require_not_negative("damping_constant", damping_constant)
+        self.damping_constant = float(damping_constant)
+
+    def _drag(self) -> tuple[Array, float]:
+        rod = self.system
+        size = self.damping_constant * float(np.mean(rod.rest_lengths))
+        nodes = np.full(rod.n_nodes, size)
+        if not rod.ring_rod_flag:
+            nodes[[0, -1]] *= 0.5
+        return nodes, size
+
+    def dampen_rates(self, system: Any, time: float) -> None:
+        """Add the drag to the loads of the next step."""
+        nodes, element = self._drag()
+        system.external_forces -= nodes * system.velocity_collection
+        system.external_torques -= element * system.omega_collection
+
+    def lower(self, builder: SceneBuilder) -> None:
+        """Write drag."""
+        builder.add_drag(self.system, *self._drag())
+
+
+def _element_mass(rod: Any) -> Array:
+    """Return the mass of elements: of nodes, halved between neighbours and whole at the ends [kg], (n,)."""
+    if rod.ring_rod_flag:
+        return np.array(rod.mass)
+    mass = 0.5 * (rod.mass[1:] + rod.mass[:-1])
+    mass[0] += 0.5 * rod.mass[0]
+    mass[-1] += 0.5 * rod.mass[-1]
+    return mass

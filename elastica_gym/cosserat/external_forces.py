@@ -1,0 +1,248 @@
+"""Loads on rods and rigid bodies from outside."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .lowering import SceneBuilder
+from .model import Array
+from .rod.description import require_not_negative, require_positive
+from .surroundings import beta_spline, net_couple, wave_profiles
+
+
+class NoForces:
+    """Base class of loads; write your own by overriding one of the methods or both.
+
+    They are called once in each step (in each stage of PEFRL), after the system has moved, and add to
+    ``system.external_forces`` [N], lab frame, and ``system.external_torques`` [N m], material frame.
+    """
+
+    def apply_forces(self, system: Any, time: float = 0.0) -> None:
+        """Add forces. ``time`` is that of the stage [s]."""
+
+    def apply_torques(self, system: Any, time: float = 0.0) -> None:
+        """Add torques. ``time`` is that of the stage [s]."""
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write no rows."""
+
+
+class GravityForces(NoForces):
+    """Weight.
+
+    Parameters
+    ----------
+    acc_gravity : array_like
+        Acceleration [m/s^2], (3,).
+    """
+
+    def __init__(self, acc_gravity: ArrayLike = (0.0, -9.80665, 0.0)) -> None:
+        self.acc_gravity = _vector("acc_gravity", acc_gravity)
+
+    def apply_forces(self, system: Any, time: float = 0.0) -> None:
+        """Add m g to each node."""
+        system.external_forces += self.acc_gravity[:, None] * system.mass
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write constant forces."""
+        builder.add_dead_force(system, self.acc_gravity[:, None] * system.mass)
+
+
+class EndpointForces(NoForces):
+    """Forces on the first and on the last node, growing linearly until ``ramp_up_time``.
+
+    Parameters
+    ----------
+    start_force, end_force : array_like
+        [N], (3,)
+    ramp_up_time : float
+        [s], 0 for full strength from the start.
+    """
+
+    def __init__(self, start_force: ArrayLike, end_force: ArrayLike, ramp_up_time: float = 0.0) -> None:
+        self.start_force, self.end_force = _vector("start_force", start_force), _vector("end_force", end_force)
+        require_not_negative("ramp_up_time", ramp_up_time)
+        self.ramp_up_time = float(ramp_up_time)
+
+    def apply_forces(self, system: Any, time: float = 0.0) -> None:
+        """Add the forces at the ends."""
+        growth = min(1.0, time / self.ramp_up_time) if self.ramp_up_time > 0.0 else 1.0
+        system.external_forces[..., 0] += growth * self.start_force
+        system.external_forces[..., -1] += growth * self.end_force
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write a row for each end."""
+        for index, force in ((0, self.start_force), (-1, self.end_force)):
+            if force.any():
+                builder.add_point_load(system, index, ramp_time=self.ramp_up_time, growing=force)
+
+
+class EndpointForcesSinusoidal(NoForces):
+    """Forces on the ends that turn around in the plane across a tangent, once in 4 s.
+
+    Until ``ramp_up_time`` each is -2 times its magnitude along the normal; from then on, with T the
+    time since, cos(pi T/2) along normal x tangent and sin(pi T/2) along the normal.
+
+    Parameters
+    ----------
+    start_force_mag, end_force_mag : float
+        [N]
+    ramp_up_time : float
+        [s]
+    tangent_direction, normal_direction : array_like
+        Unit vectors, (3,).
+    """
+
+    def __init__(
+        self, start_force_mag: float, end_force_mag: float, ramp_up_time: float = 0.0,
+        tangent_direction: ArrayLike = (0.0, 0.0, 1.0), normal_direction: ArrayLike = (0.0, 1.0, 0.0),
+    ) -> None:  # fmt: skip
+        require_not_negative("ramp_up_time", ramp_up_time)
+        self.start_force_mag, self.end_force_mag = float(start_force_mag), float(end_force_mag)
+        self.ramp_up_time = float(ramp_up_time)
+        self.normal_direction = _vector("normal_direction", normal_direction)
+        self.roll_direction = np.cross(self.normal_direction, _vector("tangent_direction", tangent_direction))
+
+    def apply_forces(self, system: Any, time: float = 0.0) -> None:
+        """Add the forces at the ends."""
+        late = 0.5 * np.pi * (time - self.ramp_up_time)
+        turning = np.cos(late) * self.roll_direction + np.sin(late) * self.normal_direction
+        direction = -2.0 * self.normal_direction if late < 0.0 else turning
+        system.external_forces[..., 0] += self.start_force_mag * direction
+        system.external_forces[..., -1] += self.end_force_mag * direction
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write a row for each end."""
+        for index, size in ((0, self.start_force_mag), (-1, self.end_force_mag)):
+            builder.add_point_load(
+                system, index, ramp_time=self.ramp_up_time, before=-2.0 * size * self.normal_direction,
+                cosine=size * self.roll_direction, sine=size * self.normal_direction, angular_frequency=0.5 * np.pi,
+            )  # fmt: skip
+
+
+class UniformForces(NoForces):
+    """A force spread evenly over a system.
+
+    Parameters
+    ----------
+    force : float
+        All of it [N].
+    direction : array_like
+        Unit vector, (3,).
+    """
+
+    def __init__(self, force: float, direction: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        self.force = float(force) * _vector("direction", direction)[:, None]
+
+    def apply_forces(self, system: Any, time: float = 0.0) -> None:
+        """Add an equal part to each element, half of it on each node."""
+        system.external_forces += self.force * _shares(system)
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write constant forces."""
+        builder.add_dead_force(system, self.force * _shares(system))
+
+
+class UniformTorques(NoForces):
+    """A torque spread evenly over a system, constant in the lab.
+
+    Parameters
+    ----------
+    torque : float
+        All of it [N m].
+    direction : array_like
+        Unit vector, (3,).
+    """
+
+    def __init__(self, torque: float, direction: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        self.torque = float(torque) * _vector("direction", direction)
+
+    def apply_torques(self, system: Any, time: float = 0.0) -> None:
+        """Add an equal part to each element."""
+        system.external_torques += np.einsum("ijk,j->ik", system.director_collection, self.torque / system.n_elems)
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write constant torques."""
+        builder.add_dead_torque(system, self.torque[:, None] / system.n_elems)
+
+
+class MuscleTorques(NoForces):
+    """A travelling wave of muscle couple along a rod (Gazzola et al. 2018, section 5.2).
+
+    With s the arc length of an element's end over the whole, the couple between two elements is
+    min(1, t/ramp) beta(s) sin(2 pi t/period - k s + phase) along ``direction``, taken in reverse order
+    along the rod; equal and opposite on the two.
+
+    Parameters
+    ----------
+    base_length : float
+        Length of the rod; without effect, since s is divided by the sum of ``rest_lengths`` [m].
+    b_coeff : array_like
+        Control coefficients of beta, a cubic B-spline, at least four [N m].
+    period : float
+        [s]
+    wave_number : float
+        k, for s from 0 to 1 [rad].
+    phase_shift : float
+        [rad]
+    direction : array_like
+        Of the couple in the lab, (3,).
+    rest_lengths : array_like
+        Of the rod's elements [m], (n,).
+    ramp_up_time : float
+        Time of linear growth to full strength, 0 for none [s].
+    with_spline : bool
+        Whether beta is the spline, or 1 N m throughout.
+    """
+
+    def __init__(
+        self, base_length: float, b_coeff: ArrayLike, period: float, wave_number: float, phase_shift: float,
+        direction: ArrayLike, rest_lengths: ArrayLike, ramp_up_time: float = 0.0, with_spline: bool = False,
+    ) -> None:  # fmt: skip
+        require_positive("period", period)
+        require_not_negative("ramp_up_time", ramp_up_time)
+        lengths, coefficients = np.array(rest_lengths, dtype=np.float64), np.atleast_1d(b_coeff)
+        if with_spline and coefficients.size < 4:
+            raise ValueError(f"b_coeff must be at least 4 numbers, not {coefficients.size}")
+        self.direction = _vector("direction", direction)
+        self.angular_frequency = 2.0 * np.pi / period
+        self.wave_number, self.phase_shift = float(wave_number), float(phase_shift)
+        self.ramp_up_time = float(ramp_up_time)
+        self.s = np.cumsum(lengths) / np.sum(lengths)
+        self.my_spline = beta_spline(coefficients, self.s) if with_spline else np.ones_like(self.s)
+
+    def profiles(self) -> tuple[Array, Array]:
+        """Return what multiplies sin and cos of 2 pi t/period: couples between elements [N m], (n - 1,)."""
+        return wave_profiles(self.s, self.my_spline, self.wave_number, self.phase_shift)
+
+    def apply_torques(self, system: Any, time: float = 0.0) -> None:
+        """Add each couple to the element behind it, and its opposite to the one before."""
+        growth = min(1.0, time / self.ramp_up_time) if self.ramp_up_time > 0.0 else 1.0
+        sine, cosine = self.profiles()
+        angle = self.angular_frequency * time
+        couple = net_couple(growth * (np.sin(angle) * sine + np.cos(angle) * cosine))
+        system.external_torques += np.einsum("ijk,j->ik", system.director_collection, self.direction) * couple
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write a wave."""
+        if self.s.size != system.n_elems:
+            raise ValueError(f"rest_lengths must be {system.n_elems} numbers, one for each element, not {self.s.size}")
+        sine, cosine = self.profiles()
+        builder.add_wave(system, axis=self.direction, angular_frequency=self.angular_frequency,
+                         ramp_time=self.ramp_up_time, sine=sine, cosine=cosine)  # fmt: skip
+
+
+def _shares(system: Any) -> Array:
+    """Return the part of a uniform force that each node gets."""
+    shares = np.full(system.n_nodes, 1.0 / system.n_elems)
+    if system.n_nodes == system.n_elems + 1:
+        shares[0] = shares[-1] = 0.5 / system.n_elems
+    return shares
+
+
+def _vector(name: str, value: ArrayLike) -> Array:
+    vector = np.ravel(np.array(value, dtype=np.float64))
+    if vector.shape != (3,) or not np.isfinite(vector).all():
+        raise ValueError(f"{name} must be three finite numbers, not {np.array(value).tolist()}")
+    return vector

@@ -1,0 +1,108 @@
+"""What rods meet in their surroundings: planes, and a viscous fluid."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import surroundings
+from .external_forces import NoForces
+from .lowering import SceneBuilder
+from .rod.description import require_not_negative
+from .rod.strain import quadrature
+
+SURFACE_TOLERANCE = 1e-4
+"""Gap below which an element is in contact with a plane [m]"""
+
+
+class _OnPlane(NoForces):
+    """What answers to the net force, and so exists in the compiled step alone."""
+
+    plane: surroundings.Plane
+
+    def apply_forces(self, system: Any, time: float = 0.0) -> None:
+        """Refuse: a plane answers to the net force, which is not known before all other loads are."""
+        raise NotImplementedError(
+            f"{type(self).__name__} acts after all other loads, inside the step; it cannot be called by a subclass"
+        )
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write a plane."""
+        builder.add_plane(system, self.plane)
+
+
+class InteractionPlane(_OnPlane):
+    """A plane without friction: answers to the force that presses on it, to penetration and to approach.
+
+    Parameters
+    ----------
+    k : float
+        Restoring force per penetration [N/m].
+    nu : float
+        Damping force per velocity along the normal [N s/m].
+    plane_origin, plane_normal : array_like
+        A point of it [m], and its normal towards the free side, of any length; (3,) or (3, 1).
+    """
+
+    def __init__(self, k: float, nu: float, plane_origin: ArrayLike, plane_normal: ArrayLike) -> None:
+        self.surface_tol = SURFACE_TOLERANCE
+        self.plane = surroundings.Plane(
+            stiffness=float(k), damping=float(nu), origin=_triple(plane_origin), normal=_triple(plane_normal),
+            surface_tolerance=self.surface_tol,
+        )  # fmt: skip
+
+
+class AnisotropicFrictionalPlane(_OnPlane):
+    """A plane with anisotropic Coulomb friction (Gazzola et al. 2018, appendix D).
+
+    Parameters
+    ----------
+    k, nu, plane_origin, plane_normal
+        As for `InteractionPlane`.
+    slip_velocity_tol : float
+        Slip velocity up to which friction is static; from twice of it on it is kinetic [m/s].
+    static_mu_array, kinetic_mu_array : array_like
+        Coefficients forward (along the tangent), backward and sideways, (3,).
+    """
+
+    def __init__(
+        self, k: float, nu: float, plane_origin: ArrayLike, plane_normal: ArrayLike, slip_velocity_tol: float,
+        static_mu_array: ArrayLike, kinetic_mu_array: ArrayLike,
+    ) -> None:  # fmt: skip
+        self.plane = surroundings.Plane(
+            stiffness=float(k), damping=float(nu), origin=_triple(plane_origin), normal=_triple(plane_normal),
+            surface_tolerance=SURFACE_TOLERANCE, slip_tolerance=float(slip_velocity_tol),
+            static_friction=_triple(static_mu_array), kinetic_friction=_triple(kinetic_mu_array),
+        )  # fmt: skip
+
+
+class SlenderBodyTheory(NoForces):
+    """Drag of a viscous fluid on a slender rod (Gazzola et al. 2018, eq. 4.13).
+
+    Parameters
+    ----------
+    dynamic_viscosity : float
+        mu [Pa s].
+    """
+
+    def __init__(self, dynamic_viscosity: float) -> None:
+        require_not_negative("dynamic_viscosity", dynamic_viscosity)
+        self.dynamic_viscosity = float(dynamic_viscosity)
+
+    def apply_forces(self, system: Any, time: float = 0.0) -> None:
+        """Add -4 pi mu l/ln(L/r) (I - t t^T/2) v on each element, half of it to each node."""
+        m, v, t, lengths = system.mass, system.velocity_collection, system.tangents, system.lengths
+        velocity = (m[1:] * v[:, 1:] + m[:-1] * v[:, :-1]) / (m[1:] + m[:-1])
+        size = -4.0 * np.pi * self.dynamic_viscosity * lengths / np.log(lengths.sum() / system.radius)
+        system.external_forces += quadrature(size * (velocity - 0.5 * t * (t * velocity).sum(axis=0)), False)
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write a fluid."""
+        if system.ring_rod_flag:
+            raise NotImplementedError("SlenderBodyTheory acts on open rods; this one is a ring")
+        builder.add_flow(system, self.dynamic_viscosity)
+
+
+def _triple(value: ArrayLike) -> tuple[float, float, float]:
+    a, b, c = np.ravel(np.asarray(value, dtype=np.float64)).tolist()
+    return a, b, c

@@ -1,0 +1,60 @@
+"""Damping of velocities at the end of a step, and drag on the way."""
+
+from math import exp
+
+from .compiler import FIRST, apart, stage
+
+
+@stage
+def drag(n, v, w, node_drag, element_drag, force, torque):
+    """Add forces and torques against velocities."""
+    for k in range(FIRST, n):
+        a, b = node_drag[k], element_drag[k]
+        force[0][k] -= a * v[0][k]
+        force[1][k] -= a * v[1][k]
+        force[2][k] -= a * v[2][k]
+        torque[0][k] -= b * w[0][k]
+        torque[1][k] -= b * w[1][k]
+        torque[2][k] -= b * w[2][k]
+
+
+@stage
+def decay(n, node_factor, element_factor, v, w):
+    """Multiply velocities by factors."""
+    for k in range(FIRST, n):
+        a, b = node_factor[k], element_factor[k]
+        v[0][k] *= a
+        v[1][k] *= a
+        v[2][k] *= a
+        w[0][k] *= b
+        w[1][k] *= b
+        w[2][k] *= b
+
+
+@stage
+def dilating_decay(n, dt, rate, length, inv_rest_length, w):
+    """Multiply angular velocities by exp(-rate e dt)."""
+    for k in range(FIRST, n):
+        h = -dt * length[k] * inv_rest_length[k]
+        w[0][k] *= exp(h * rate[0][k])
+        w[1][k] *= exp(h * rate[1][k])
+        w[2][k] *= exp(h * rate[2][k])
+
+
+@apart
+def smooth(first, last, order, rate, term):
+    """Take the shortest waves out of one row of velocities, from slot first to last - 1.
+
+    What is taken is (-Laplacian/4)^order of them; both ends are left alone.
+    """
+    for k in range(first, last):
+        term[k] = rate[k]
+    for _ in range(order):
+        before = term[first]
+        for k in range(first + 1, last - 1):
+            here = term[k]
+            term[k] = 0.25 * (2.0 * here - before - term[k + 1])
+            before = here
+        term[first] = term[last - 1] = 0.0
+    for k in range(first, last):
+        rate[k] -= term[k]

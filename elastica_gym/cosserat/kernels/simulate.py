@@ -1,0 +1,285 @@
+"""The library's step: that of the environments, with the features of a Scene and calls to the user's classes.
+
+It is an entry of its own, compiled when first needed, so that the environments start fast.
+"""
+
+from math import cos, exp, sin
+
+import numpy as np
+
+from ..model import BLOCK, LEAD
+from .bodies import orthonormalise_bodies
+from .compiler import apart, entry, inner
+from .constraints import hold, move
+from .damping import decay, dilating_decay, drag, smooth
+from .ends import add_to
+from .flow import resist
+from .hooks import call
+from .joints import join
+from .kinematics import orthonormalise
+from .loads import clear, clear_at, dead_force, dead_torque, external, external_at, viscosity, wave
+from .pairs import ground_bodies, touch_bodies, touch_rods
+from .plane import slide, slip, stick, to_nodes, touch
+from .rings import follow, hand_back
+from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows
+from .vectors import add, plus, times, to_material, vector
+
+# where there are loads from outside: nowhere, in a few slots, everywhere
+UNLOADED, SPARSE, DENSE = 0, 1, 2
+
+
+@inner
+def tail(a, k):
+    """Return three rows from slot k on."""
+    return a[0][k:], a[1][k:], a[2][k:]
+
+
+@inner
+def tails(a, k):
+    """Return the nine rows of directors from slot k on."""
+    return tail(a[0], k), tail(a[1], k), tail(a[2], k)
+
+
+@inner
+def work_tail(a, k):
+    """Return the rows of scratch from slot k on."""
+    return (a[0][k:], a[1][k:], a[2][k:], a[3][k:], a[4][k:], a[5][k:], a[6][k:], a[7][k:],
+            a[8][k:], a[9][k:], a[10][k:], a[11][k:], a[12][k:], a[13][k:], a[14][k:], a[15][k:])  # fmt: skip
+
+
+@inner
+def window(span):
+    """Return where rows are cut, and the end in the rest, so that stages see the span alone."""
+    return span[0] - LEAD, np.uint64(span[1] - span[0] + LEAD)
+
+
+@inner
+def answer(address, time):
+    """Call a hook, if there is one."""
+    return call(address, time) if address != 0 else 0  # type: ignore[call-arg]  # the compiler adds the first
+
+
+@inner
+def constrain_values(scene, state, hooks):
+    """Constrain positions and directors. Returns whether to stop."""
+    time = state.time[0]
+    if scene.pins.slot.size + scene.clamps.slot.size > 0:
+        hold(scene.pins, scene.clamps, time, state.x[0], state.Q[0], state.body_x[0], state.body_Q[0])
+    return answer(hooks.values, time)
+
+
+@inner
+def constrain_rates(scene, state, hooks):
+    """Constrain velocities. Returns whether to stop."""
+    time = state.time[0]
+    if scene.pins.slot.size + scene.clamps.slot.size > 0:
+        move(scene.pins, scene.clamps, time, state.v[0], state.Q[0], state.w[0], state.body_v[0], state.body_Q[0],
+             state.body_w[0])  # fmt: skip
+    return answer(hooks.rates, time)
+
+
+@apart
+def point_forces(loads, time, force, body_force):
+    """Add the forces on single nodes and bodies."""
+    for j in range(loads.slot.size):
+        late = time - loads.ramp_time[j]
+        growth = time / loads.ramp_time[j] if late < 0.0 else 1.0
+        f = times(growth, vector(loads.growing[j]))
+        if late < 0.0:
+            f = plus(f, 1.0, vector(loads.before[j]))
+        elif loads.angular_frequency[j] != 0.0:
+            angle = loads.angular_frequency[j] * late
+            f = plus(plus(f, cos(angle), vector(loads.cosine[j])), sin(angle), vector(loads.sine[j]))
+        add_to(force, body_force, loads.slot[j], 1.0, f)
+
+
+@apart
+def dead_loads_on_bodies(loads, body_Q, body_force, body_torque):
+    """Add what is constant in the lab to bodies."""
+    for b in range(body_force.shape[0]):
+        add(body_force[b], 1.0, vector(loads.body_force[b]))
+        add(body_torque[b], 1.0, to_material(body_Q[b], vector(loads.body_torque[b])))
+
+
+@apart
+def external_loads(model, scene, state, control, hooks, n):
+    """Collect in Control what acts on rods from outside, but the planes. Returns whether to stop."""
+    time, Q, loads = state.time[0], state.Q[0], scene.dead_loads
+    force, torque = control.force[0], control.torque[0]
+    if scene.point_loads.slot.size > 0:
+        point_forces(scene.point_loads, time, force, state.body_force[0])
+    dead_loads_on_bodies(loads, state.body_Q[0], state.body_force[0], state.body_torque[0])
+    if loads.has_force:
+        dead_force(n, rows(loads.force), rows(force))
+    if loads.has_torque:
+        dead_torque(n, rows(loads.torque), matrix(Q), rows(torque))
+    waves = scene.waves
+    for j in range(waves.ramp_time.size):
+        k, m = window(scene.wave_span[j])
+        strength = time / waves.ramp_time[j] if time < waves.ramp_time[j] else 1.0
+        wave(m, strength, waves.angular_frequency[j] * time, waves.axis[j], waves.sine[j][k:], waves.cosine[j][k:],
+             tails(Q, k), tail(torque, k))  # fmt: skip
+    for j in range(scene.flows.viscosity.size):
+        resist(scene.flows.span[j, 0], scene.flows.span[j, 1], scene.flows.viscosity[j], state.x[0], state.v[0],
+               model.weight, state.length[0], state.radius[0], force)  # fmt: skip
+    if scene.joints.stiffness.size > 0:
+        join(scene.joints, state.x[0], state.v[0], Q, state.w[0], force, torque, state.body_x[0], state.body_v[0],
+             state.body_Q[0], state.body_w[0], state.body_force[0], state.body_torque[0])  # fmt: skip
+    s = state
+    if scene.body_contacts.body.size > 0:
+        bodies = s.body_x[0], s.body_v[0], s.body_Q[0], s.body_w[0], s.body_force[0], s.body_torque[0]
+        touch_bodies(n, scene.body_contacts, model.cylinders, s.scratch[0], s.x[0], s.v[0], Q, s.w[0], s.length[0],
+                     s.radius[0], bodies, force, torque)  # fmt: skip
+    if scene.rod_contacts.stiffness.size > 0:
+        touch_rods(n, scene.rod_contacts, s.scratch[0], s.x[0], s.v[0], Q, s.w[0], s.length[0], s.radius[0], force,
+                   torque)  # fmt: skip
+    return answer(hooks.loads, time)
+
+
+@inner
+def clear_loads(scene, state, control, n, loading):
+    """Set the loads from outside to zero."""
+    if loading == DENSE:
+        clear(n, rows(control.force[0]), rows(control.torque[0]))
+    else:
+        clear_at(scene.touched, control.force[0], control.torque[0])
+    state.body_force[0, :, :] = 0.0
+    state.body_torque[0, :, :] = 0.0
+
+
+@inner
+def add_loads(scene, state, control, n, loading):
+    """Add the loads from outside to the net loads."""
+    if loading == DENSE:
+        external(n, rows(control.force[0]), rows(control.torque[0]), rows(state.force[0]), rows(state.torque[0]))
+    else:
+        external_at(scene.touched, control.force[0], control.torque[0], state.force[0], state.torque[0])
+
+
+@inner
+def resistance(model, scene, state, n):
+    """Add to the net loads what velocities meet: the documented damping, and drag."""
+    s = state
+    force, torque, v, w = rows(s.force[0]), rows(s.torque[0]), rows(s.v[0]), rows(s.w[0])
+    if model.is_viscous:
+        viscosity(n, v, w, s.length[0], (model.viscosity[0], model.viscosity[1]), force, torque)
+    if scene.drag.is_on:
+        drag(n, v, w, scene.drag.force, scene.drag.torque, force, torque)
+
+
+@inner
+def settle(planes, j, n, x, v, Q, w, radius, share, weight, work, force, torque, normal_force):
+    """Add the response and friction of plane j to the slots that rows are cut to, as `step.ground` does to all.
+
+    ``work`` are 16 rows to write on.
+    """
+    p, normal = planes, planes.normal[j]
+    push, axial, axial_material = (work[0], work[1], work[2]), (work[3], work[4], work[5]), (work[6], work[7], work[8])
+    hold, hold_rolling, response, carried, slip_axial, slip_rolling, damping = work[9:]
+
+    touch(n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, radius, share,
+          force, response, damping, carried, axial)  # fmt: skip
+    slip(n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response)
+    n_sticking = slide(
+        n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j], slip_axial, slip_rolling,
+        response, carried, radius, axial, axial_material, push, hold, hold_rolling, torque, normal_force,
+    )  # fmt: skip
+    to_nodes(n, push, force)
+    if n_sticking > 0:
+        stick(n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
+              push, torque)  # fmt: skip
+        to_nodes(n, push, force)
+
+
+@apart
+def ground(model, scene, state):
+    """Add the response and friction of each plane to the rods that it acts on, after all other loads."""
+    m, s = model, state
+    s.normal_force[0, :] = 0.0
+    for j in range(scene.planes.stiffness.size):
+        k, end = window(scene.plane_span[j])
+        rows_to_write = work_tail(s.scratch[0], k)
+        # the first node reads a push from before
+        for d in range(3):
+            rows_to_write[d][LEAD - 1] = 0.0
+        settle(scene.planes, j, end, tail(s.x[0], k), tail(s.v[0], k), tails(s.Q[0], k), tail(s.w[0], k),
+               s.radius[0][k:], (m.share[0][k:], m.share[1][k:]), (m.weight[0][k:], m.weight[1][k:]), rows_to_write,
+               tail(s.force[0], k), tail(s.torque[0], k), s.normal_force[0][k:])  # fmt: skip
+
+
+@inner
+def damp(model, scene, state, hooks, n, dt):
+    """Damp velocities over a time step. Returns whether to stop."""
+    d, v, w = scene.decay, rows(state.v[0]), rows(state.w[0])
+    if d.is_on:
+        decay(n, d.node_factor, d.element_factor, v, w)
+    if d.is_dilating:
+        dilating_decay(n, dt, rows(d.dilating_rate), state.length[0], model.inv_rest_length, w)
+    for j in range(scene.filters.order.size):
+        first, last, order = scene.filters.span[j, 0], scene.filters.span[j, 1], scene.filters.order[j]
+        for i in range(3):
+            smooth(first, last, order, state.v[0, i], state.scratch[0, 0])
+            smooth(first, last - 1, order, state.w[0, i], state.scratch[0, 0])
+    return answer(hooks.damping, state.time[0])
+
+
+@inner
+def prepare(scene, state, dt):
+    """Compute the factors that do not change between steps."""
+    for k in range(scene.decay.node_rate.size):
+        scene.decay.node_factor[k] = exp(-scene.decay.node_rate[k] * dt)
+        scene.decay.element_factor[k] = exp(-scene.decay.element_rate[k] * dt)
+        state.decay[0, k] = 1.0
+
+
+@entry
+def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
+    """Take steps of a symplectic scheme. Returns 0, or 1 if a hook asked to stop in the middle of a step.
+
+    Unlike `advance`, it does not merge the last drift of a step with the first of the next: what comes
+    out does not depend on where a run is cut. External loads are cleared between stages, but neither
+    before the first nor after the last, so that those set from outside act once, and callbacks see them.
+    ``loading`` is one of UNLOADED, SPARSE (only where ``scene.touched`` says) and DENSE.
+    """
+    n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
+    prepare(scene, state, dt)
+    n_kicks = scheme.kicks.size
+    for step in range(n_steps):
+        for stage in range(n_kicks + 1):
+            drift(model, state, 0, n, scheme.drifts[stage] * dt)
+            state.time[0] += scheme.drifts[stage] * dt
+            if stage == n_kicks:
+                state.step[0] += 1
+                if state.step[0] % ORTHONORMALISE_EVERY == 0:
+                    orthonormalise(n, matrix(state.Q[0]))
+                    orthonormalise_bodies(state.body_Q[0])
+            if constrain_values(scene, state, hooks) != 0:
+                return 1
+            if stage == n_kicks:
+                break
+            if scene.rings.first.size > 0:
+                follow(scene.rings, state.x[0], state.v[0], state.Q[0], state.w[0])
+            internal(model, state, control, 0, n, dt)
+            if loading != UNLOADED:
+                if step + stage > 0:
+                    clear_loads(scene, state, control, n, loading)
+                if external_loads(model, scene, state, control, hooks, n) != 0:
+                    return 1
+                add_loads(scene, state, control, n, loading)
+            resistance(model, scene, state, n)
+            if scene.rings.first.size > 0:
+                hand_back(scene.rings, state.force[0], state.torque[0])
+            if scene.planes.stiffness.size > 0:
+                ground(model, scene, state)
+            if scene.grounded.size > 0:
+                ground_bodies(
+                    scheme.kicks[stage] * dt, scene.body_planes, scene.grounded, scene.ground_friction, model.cylinders,
+                    state.body_x[0], state.body_v[0], state.body_Q[0], state.body_w[0], state.body_contact[0],
+                    state.body_force[0], state.body_torque[0],
+                )  # fmt: skip
+            kick(model, state, 0, n, scheme.kicks[stage] * dt)
+            if constrain_rates(scene, state, hooks) != 0:
+                return 1
+            if stage == n_kicks - 1 and damp(model, scene, state, hooks, n, dt) != 0:
+                return 1
+    return 0

@@ -1,0 +1,334 @@
+"""From features that a user declared to the tables of a Scene that the compiled step reads.
+
+A feature that has a method ``lower(builder, ...)`` writes its own rows here. A user's subclass of it
+that overrides what is called every step is not lowered: the step calls it instead.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .assembly import plane_table
+from .kernels.simulate import DENSE, SPARSE, UNLOADED
+from .model import Array, Index, Model, Waves, aligned_zeros
+from .scene import (
+    BodyContacts,
+    Clamps,
+    DeadLoads,
+    Decay,
+    Drag,
+    Filters,
+    Flows,
+    Joints,
+    Pins,
+    PointLoads,
+    Rings,
+    RodContacts,
+    Scene,
+)
+from .surroundings import Plane, net_couple
+
+ALWAYS = -np.inf
+
+
+def is_built_in(feature: Any, *methods: str) -> bool:
+    """Return whether a feature can be lowered: no subclass has overridden what it does."""
+    for cls in type(feature).__mro__:
+        if "lower" in vars(cls):
+            return all(getattr(type(feature), name) is getattr(cls, name) for name in methods)
+    return False
+
+
+class _Span(NamedTuple):
+    first: int
+    last: int
+
+
+class SceneBuilder:
+    """Rows of a Scene in the making.
+
+    Parameters
+    ----------
+    model : Model
+        Of all rods.
+    rods, bodies : sequence
+        In the order of the model.
+    """
+
+    def __init__(self, model: Model, rods: Sequence[Any], bodies: Sequence[Any] = ()) -> None:
+        self._slots = model.mass.size
+        # (bodies alone have a bystander in the model)
+        self._first = {id(rod): int(start) for rod, start in zip(rods, model.first_slot, strict=bool(rods))}
+        self._body = {id(body): number for number, body in enumerate(bodies)}
+        self._body_force, self._body_torque = np.zeros((len(bodies), 3)), np.zeros((len(bodies), 3))
+        self._point_loads: list[tuple] = []
+        self._dead_force, self._dead_torque = aligned_zeros((3, self._slots)), aligned_zeros((3, self._slots))
+        self._waves: dict[tuple, tuple[Array, Array, list[_Span]]] = {}
+        self._flows: list[tuple[_Span, float]] = []
+        self._drag_force, self._drag_torque = aligned_zeros((self._slots,)), aligned_zeros((self._slots,))
+        self._joints: list[tuple] = []
+        self._number = {id(rod): number for number, rod in enumerate(rods)}
+        self._rods = list(rods)
+        self._rod_contacts: dict[tuple[float, float], set[tuple[int, int]]] = {}
+        self._body_contacts: list[tuple] = []
+        self._body_planes: list[tuple[Plane, int, float]] = []
+        self._planes: list[tuple[Plane, _Span]] = []
+        self._pins: list[tuple] = []
+        self._clamps: list[tuple] = []
+        self._node_rate, self._element_rate = aligned_zeros((self._slots,)), aligned_zeros((self._slots,))
+        self._dilating_rate = aligned_zeros((3, self._slots))
+        self._filters: list[tuple[_Span, int]] = []
+
+    # where things are
+
+    def node(self, system: Any, index: int) -> int:
+        """Return the place of a node, counted from the end if ``index`` is negative."""
+        if id(system) in self._body:
+            return -1 - self._body[id(system)]
+        return self._first[id(system)] + _index("node", index, system.n_nodes)
+
+    def element(self, system: Any, index: int) -> int:
+        """Return the place of an element, counted from the end if ``index`` is negative."""
+        if id(system) in self._body:
+            return -1 - self._body[id(system)]
+        return self._first[id(system)] + _index("element", index, system.n_elems)
+
+    def nodes(self, system: Any) -> slice:
+        """Return the slots of a system's nodes."""
+        return slice(self._first[id(system)], self._first[id(system)] + system.n_nodes)
+
+    def elements(self, system: Any) -> slice:
+        """Return the slots of a system's elements."""
+        return slice(self._first[id(system)], self._first[id(system)] + system.n_elems)
+
+    # loads
+
+    def add_point_load(
+        self, system: Any, index: int, *, ramp_time: float = 0.0, growing: ArrayLike = (0.0, 0.0, 0.0),
+        before: ArrayLike = (0.0, 0.0, 0.0), cosine: ArrayLike = (0.0, 0.0, 0.0), sine: ArrayLike = (0.0, 0.0, 0.0),
+        angular_frequency: float = 0.0,
+    ) -> None:  # fmt: skip
+        """Add a force on a node; `PointLoads` says what the arguments mean."""
+        vectors = [np.ravel(v) for v in (growing, before, cosine, sine)]
+        self._point_loads.append((self.node(system, index), ramp_time, *vectors, angular_frequency))
+
+    def add_dead_force(self, system: Any, force: ArrayLike) -> None:
+        """Add a force that is constant in the lab on each node of a system [N], (3, n + 1)."""
+        if id(system) in self._body:
+            self._body_force[self._body[id(system)]] += np.ravel(force)
+        else:
+            self._dead_force[:, self.nodes(system)] += force
+
+    def add_dead_torque(self, system: Any, torque: ArrayLike) -> None:
+        """Add a torque that is constant in the lab on each element of a system [N m], (3, n)."""
+        if id(system) in self._body:
+            self._body_torque[self._body[id(system)]] += np.ravel(torque)
+        else:
+            self._dead_torque[:, self.elements(system)] += torque
+
+    def add_wave(
+        self, system: Any, *, axis: Array, angular_frequency: float, ramp_time: float, sine: Array, cosine: Array
+    ) -> None:
+        """Add a travelling wave of couples at Voronoi points [N m], (n - 1,); `Waves` says how they vary."""
+        key = (*np.ravel(axis).tolist(), float(angular_frequency), float(ramp_time))
+        if key not in self._waves:
+            self._waves[key] = (aligned_zeros((self._slots,)), aligned_zeros((self._slots,)), [])
+        tables = self._waves[key]
+        where = self.elements(system)
+        tables[0][where] += net_couple(sine)
+        tables[1][where] += net_couple(cosine)
+        tables[2].append(_Span(where.start, where.stop))
+
+    def add_flow(self, system: Any, viscosity: float) -> None:
+        """Add a viscous fluid around a system [Pa s]."""
+        where = self.elements(system)
+        self._flows.append((_Span(where.start, where.stop), viscosity))
+
+    def add_drag(self, system: Any, force: ArrayLike, torque: ArrayLike) -> None:
+        """Add drag per velocity of nodes [N s/m] and per angular velocity of elements [N m s]."""
+        self._drag_force[self.nodes(system)] += force
+        self._drag_torque[self.elements(system)] += torque
+
+    def add_plane(self, system: Any, plane: Plane) -> None:
+        """Let a system touch a plane."""
+        _require_open(system, "plane")
+        where = self.nodes(system)
+        span = _Span(where.start, where.stop)
+        # rods that follow each other on the same plane are one row
+        if self._planes and self._planes[-1][0] == plane and self._planes[-1][1].last == span.first:
+            span = _Span(self._planes.pop()[1].first, span.last)
+        self._planes.append((plane, span))
+
+    # joints and constraints
+
+    def add_joint(
+        self, ends: tuple[Any, int, Any, int], *, stiffness: float, damping: float, hinge_stiffness: float = 0.0,
+        axis: ArrayLike = (0.0, 0.0, 0.0), turn_stiffness: float = 0.0, turn_damping: float = 0.0,
+        rest_rotation: ArrayLike | None = None,
+    ) -> None:  # fmt: skip
+        """Add a joint between two systems and indices; `Joints` says what the arguments mean."""
+        one, i, two, j = ends
+        turns = hinge_stiffness != 0.0 or turn_stiffness != 0.0 or turn_damping != 0.0
+        elements = (self.element(one, i), self.element(two, j)) if turns else (0, 0)
+        self._joints.append((
+            (self.node(one, i), self.node(two, j)), elements, stiffness, damping, hinge_stiffness, np.ravel(axis),
+            turn_stiffness, turn_damping, np.eye(3) if rest_rotation is None else rest_rotation,
+        ))  # fmt: skip
+
+    def add_pin(
+        self, system: Any, index: int, *, position: Array, axes: Sequence[bool] = (True, True, True),
+        start_time: float = ALWAYS, velocity: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None:  # fmt: skip
+        """Prescribe the motion of a node; `Pins` says what the arguments mean."""
+        row = (self.node(system, index), start_time, np.ravel(velocity), np.array(axes, dtype=float), position)
+        self._pins.append(row)
+
+    def add_clamp(
+        self, system: Any, index: int, *, directors: Array | None, axes: Sequence[bool] = (True, True, True),
+        start_time: float = ALWAYS, omega: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None:  # fmt: skip
+        """Prescribe the rotation of an element; `Clamps` says what the arguments mean."""
+        held = np.eye(3) if directors is None else directors
+        self._clamps.append((self.element(system, index), start_time, np.ravel(omega), np.array(axes, dtype=float),
+                             float(directors is not None), held))  # fmt: skip
+
+    # contact
+
+    def add_body_contact(
+        self, rod: Any, body: Any, *, stiffness: float, damping: float, friction: float = 0.0, slip_damping: float = 0.0
+    ) -> None:
+        """Let a rod and a rigid body touch; `BodyContacts` says what the arguments mean."""
+        _require_open(rod, "rigid body")
+        where = self.elements(rod)
+        row = (_Span(where.start, where.stop), self._body[id(body)], stiffness, damping, friction, slip_damping)
+        self._body_contacts.append(row)
+
+    def add_rod_contact(self, one: Any, two: Any, *, stiffness: float, damping: float) -> None:
+        """Let two rods touch, or one itself; `RodContacts` says what the arguments mean."""
+        _require_open(one, "rod")
+        _require_open(two, "rod")
+        i, j = self._number[id(one)], self._number[id(two)]
+        self._rod_contacts.setdefault((float(stiffness), float(damping)), set()).add((min(i, j), max(i, j)))
+
+    def add_body_plane(self, body: Any, plane: Plane, friction: float) -> None:
+        """Let a rigid body touch a plane with a coefficient of Coulomb friction."""
+        self._body_planes.append((plane, self._body[id(body)], friction))
+
+    # dampers
+
+    def add_decay(
+        self, system: Any, *, node_rate: ArrayLike, element_rate: ArrayLike = 0.0, dilating_rate: ArrayLike = 0.0
+    ) -> None:
+        """Add exponential decay of velocities [1/s]; `Decay` says what the arguments mean."""
+        self._node_rate[self.nodes(system)] += node_rate
+        self._element_rate[self.elements(system)] += element_rate
+        self._dilating_rate[:, self.elements(system)] += dilating_rate
+
+    def add_filter(self, system: Any, order: int) -> None:
+        """Add a filter of the shortest waves."""
+        where = self.nodes(system)
+        self._filters.append((_Span(where.start, where.stop), order))
+
+    # the tables
+
+    @property
+    def loading(self) -> int:
+        """Where anything acts from outside, but planes: UNLOADED, SPARSE or DENSE."""
+        rows = (self._waves, self._flows, self._rod_contacts, self._body_contacts)
+        if any(map(len, rows)) or self._dead_force.any() or self._dead_torque.any():
+            return DENSE
+        is_loaded = self._point_loads or self._joints or self._body_force.any() or self._body_torque.any()
+        return SPARSE if is_loaded else UNLOADED
+
+    def build(self) -> Scene:
+        """Return the tables."""
+        waves = list(self._waves.items())
+        keys = np.array([key for key, _ in waves]).reshape(len(waves), 5)
+        spans = [(min(s.first for s in each), max(s.last for s in each)) for _, (_, _, each) in waves]
+        places = [row[0] for row in self._point_loads] + [place for row in self._joints for place in (*row[0], *row[1])]
+        rings = [(self._first[id(rod)], rod.n_elems) for rod in self._rods if rod.ring_rod_flag]
+        return Scene(
+            rings=_table(Rings, rings, "i", "i"),
+            touched=np.unique(np.array([place for place in places if place >= 0], dtype=np.int64)),
+            point_loads=_table(PointLoads, self._point_loads, "i", "", "3", "3", "3", "3", ""),
+            dead_loads=DeadLoads(bool(self._dead_force.any()), bool(self._dead_torque.any()), self._dead_force,
+                                 self._dead_torque, self._body_force, self._body_torque),
+            waves=Waves(axis=np.ascontiguousarray(keys[:, :3]), sine=self._stacked(sine for _, (sine, _, _) in waves),
+                        cosine=self._stacked(cosine for _, (_, cosine, _) in waves),
+                        angular_frequency=keys[:, 3].copy(), ramp_time=keys[:, 4].copy()),
+            wave_span=_spans(spans),
+            flows=Flows(_spans([span for span, _ in self._flows]),
+                        np.array([mu for _, mu in self._flows], dtype=np.float64)),
+            drag=Drag(bool(self._drag_force.any() or self._drag_torque.any()), self._drag_force, self._drag_torque),
+            joints=_table(Joints, self._joints, "i2", "i2", "", "", "", "3", "", "", "33"),
+            rod_contacts=self._rod_contact_table(),
+            body_contacts=_table(BodyContacts, self._body_contacts, "i2", "i", "", "", "", ""),
+            planes=plane_table([plane for plane, _ in self._planes]),
+            plane_span=_spans([span for _, span in self._planes]),
+            body_planes=plane_table([plane for plane, _, _ in self._body_planes]),
+            grounded=np.array([body for _, body, _ in self._body_planes], dtype=np.int64),
+            ground_friction=np.array([friction for _, _, friction in self._body_planes], dtype=np.float64),
+            pins=_table(Pins, self._pins, "i", "", "3", "3", "3"),
+            clamps=_table(Clamps, self._clamps, "i", "", "3", "3", "", "33"),
+            decay=Decay(bool(self._node_rate.any() or self._element_rate.any()), bool(self._dilating_rate.any()),
+                        self._node_rate, self._element_rate, self._dilating_rate, aligned_zeros((self._slots,)),
+                        aligned_zeros((self._slots,))),
+            filters=Filters(_spans([span for span, _ in self._filters]),
+                            np.array([order for _, order in self._filters], dtype=np.int64)),
+        )  # fmt: skip
+
+    def _rod_contact_table(self) -> RodContacts:
+        rod_of = aligned_zeros((self._slots,), np.int64)
+        for number, rod in enumerate(self._rods):
+            rod_of[self.nodes(rod)] = number
+        groups = list(self._rod_contacts.items())
+        may_touch = np.zeros((len(groups), len(self._rods), len(self._rods)), dtype=np.bool_)
+        order: list[int] = []
+        spans = []
+        for group, (_, pairs) in enumerate(groups):
+            start = len(order)
+            for i, j in pairs:
+                may_touch[group, i, j] = may_touch[group, j, i] = True
+            for number in sorted({each for pair in pairs for each in pair}):
+                where = self.elements(self._rods[number])
+                order.extend(range(where.start, where.stop))
+            spans.append((start, len(order)))
+        return RodContacts(
+            stiffness=np.array([k for (k, _), _ in groups], dtype=np.float64),
+            damping=np.array([nu for (_, nu), _ in groups], dtype=np.float64), rod_of=rod_of, may_touch=may_touch,
+            span=_spans(spans), order=np.array(order, dtype=np.int64),
+        )  # fmt: skip
+
+    def _stacked(self, rows: Any) -> Array:
+        chosen = list(rows)
+        table = aligned_zeros((len(chosen), self._slots))
+        for target, row in zip(table, chosen, strict=True):
+            target[:] = row
+        return table
+
+
+def _require_open(rod: Any, what: str) -> None:
+    if rod.ring_rod_flag:
+        raise NotImplementedError(f"contact of a ring with a {what} is not supported")
+
+
+def _index(what: str, index: int, count: int) -> int:
+    if not -count <= index < count:
+        raise IndexError(f"there is no {what} {index}; the system has {count}")
+    return index % count
+
+
+def _spans(rows: Sequence[tuple[int, int]]) -> Index:
+    return np.array(rows, dtype=np.int64).reshape(len(rows), 2)
+
+
+def _table(cls: Callable, rows: Sequence[tuple], *columns: str) -> Any:
+    """Return a table of rows, its columns as described: ``i`` for integers, then a digit for each dimension."""
+    fields = []
+    for position, column in enumerate(columns):
+        shape = tuple(int(digit) for digit in column.removeprefix("i"))
+        values = np.array([row[position] for row in rows], dtype=np.int64 if column.startswith("i") else np.float64)
+        fields.append(np.ascontiguousarray(values.reshape(len(rows), *shape)))
+    return cls(*fields)

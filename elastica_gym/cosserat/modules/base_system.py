@@ -1,0 +1,182 @@
+"""The collection of systems that make up a simulation."""
+
+from collections.abc import Iterator, MutableSequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..rigidbody.rigid_body import RigidBodyBase
+from ..rod.cosserat_rod import CosseratRod
+from ..surface.plane import Plane
+from .declaration import Declaration
+
+if TYPE_CHECKING:
+    from ..simulation import Simulation
+
+
+FEATURES = {
+    "constrain": "Constraints", "add_forcing_to": "Forcing", "connect": "Connections", "dampen": "Damping",
+    "collect_diagnostics": "CallBacks", "detect_contact_between": "Contact",
+}  # fmt: skip
+"""Which class a simulator must be derived from to have a method"""
+
+
+class BaseSystemCollection(MutableSequence):
+    """A list of rods, rigid bodies and surfaces; derive your simulator from it and the features you use.
+
+    Attributes
+    ----------
+    allowed_sys_types : tuple of type
+        What may be appended.
+    """
+
+    def __init__(self) -> None:
+        self.allowed_sys_types: tuple[type, ...] = (CosseratRod, RigidBodyBase, Plane)
+        self._systems: list[Any] = []
+        self._declared: dict[str, list[Declaration]] = {}
+        self._simulation: Simulation | None = None
+        super().__init__()
+
+    # a list
+
+    def __len__(self) -> int:
+        return len(self._systems)
+
+    def __getitem__(self, index: Any) -> Any:
+        return self._systems[index]
+
+    def __delitem__(self, index: Any) -> None:
+        self._require_open("remove a system")
+        del self._systems[index]
+
+    def __setitem__(self, index: Any, system: Any) -> None:
+        self._require_open("replace a system")
+        self._require_allowed(system)
+        self._systems[index] = system
+
+    def insert(self, index: int, system: Any) -> None:
+        """Insert a system before ``index``.
+
+        Raises
+        ------
+        TypeError
+            If it is not a rod, a rigid body or a surface.
+        ValueError
+            If it is already there.
+        """
+        self._require_open("add a system")
+        self._require_allowed(system)
+        if any(system is each for each in self._systems):
+            raise ValueError(f"this {type(system).__name__} is already in the simulator")
+        self._systems.insert(index, system)
+
+    def __str__(self) -> str:
+        return str(self._systems)
+
+    def extend_allowed_types(self, additional_types: tuple[type, ...]) -> None:
+        """Allow more types of systems; those that the step does not know are not moved by it."""
+        self.allowed_sys_types += tuple(additional_types)
+
+    def append_allowed_types(self, additional_types: type) -> None:
+        """Allow one more type of systems."""
+        self.extend_allowed_types((additional_types,))
+
+    def systems(self) -> Iterator[Any]:
+        """Return an iterator over all systems."""
+        return iter(self._systems)
+
+    def get_system_index(self, system: Any) -> int:
+        """Return where a system is, or the index that was given.
+
+        Raises
+        ------
+        ValueError
+            If it is not in the simulator.
+        IndexError
+            If the index is out of range.
+        """
+        if isinstance(system, int | np.integer):
+            if not -len(self) <= system < len(self):
+                raise IndexError(f"there is no system {system}; the simulator has {len(self)}")
+            return int(system) % len(self)
+        for index, each in enumerate(self._systems):
+            if each is system:
+                return index
+        raise ValueError(f"this {type(system).__name__} is not in the simulator; append it first")
+
+    # features
+
+    def __getattr__(self, name: str) -> Any:
+        # reached only for what no base class has: say which of them is missing
+        if name in FEATURES:
+            raise AttributeError(f"to call {name}, derive {type(self).__name__} from {FEATURES[name]} too")
+        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+
+    def _declare(self, feature: str, what: str, base: type, *systems: Any) -> Declaration:
+        """Note a feature of systems, to be made at ``finalize``."""
+        self._require_open(f"add a {what}")
+        found = tuple(self._systems[self.get_system_index(system)] for system in systems)
+        declaration = Declaration(what, base, *found)
+        self._declared.setdefault(feature, []).append(declaration)
+        return declaration
+
+    def finalize(self) -> None:
+        """Make all features and lower them to tables. After this, nothing can be added.
+
+        Constraints are applied at time 0, and callbacks are called once, with time 0 and step 0.
+
+        Raises
+        ------
+        RuntimeError
+            If it was called before, if there is no rod, or if a feature was declared without a class.
+        """
+        from ..simulation import Simulation
+
+        self._require_open("finalize again")
+        if not any(isinstance(system, CosseratRod | RigidBodyBase) for system in self._systems):
+            raise RuntimeError("there is nothing to simulate: append a rod or a rigid body before finalize")
+        self._simulation = Simulation(self._systems, self._declared)
+        self._simulation.begin()
+
+    @property
+    def simulation(self) -> "Simulation":
+        """The simulation behind this collection.
+
+        Raises
+        ------
+        RuntimeError
+            Before ``finalize``.
+        """
+        if self._simulation is None:
+            raise RuntimeError("the simulator is not finalized; call finalize() before it is run")
+        return self._simulation
+
+    def constrain_values(self, time: float) -> None:
+        """Apply the constraints of positions and directors."""
+        self.simulation.constrain_values(time)
+
+    def constrain_rates(self, time: float) -> None:
+        """Apply the constraints of velocities."""
+        self.simulation.constrain_rates(time)
+
+    def apply_callbacks(self, time: float, current_step: int) -> None:
+        """Call all callbacks."""
+        self.simulation.call_back(time, current_step)
+
+    def close(self) -> None:
+        """Tell callbacks that the simulation is over."""
+        self.simulation.close()
+
+    def _require_open(self, action: str) -> None:
+        if self._simulation is not None:
+            raise RuntimeError(f"cannot {action}: the simulator is finalized")
+
+    def _require_allowed(self, system: Any) -> None:
+        if not isinstance(system, self.allowed_sys_types):
+            allowed = ", ".join(each.__name__ for each in self.allowed_sys_types)
+            raise TypeError(f"a simulator holds {allowed}; not {type(system).__name__}")
+        for required in getattr(system, "REQUISITE_MODULES", ()):
+            if not isinstance(self, required):
+                raise RuntimeError(f"{type(system).__name__} needs a simulator derived from {required.__name__}")
+
+

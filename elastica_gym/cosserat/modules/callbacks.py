@@ -1,0 +1,37 @@
+"""Callbacks, as a part of simulators."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..callback_functions import CallBackBaseClass
+from .declaration import Declaration
+
+if TYPE_CHECKING:
+    from .base_system import BaseSystemCollection as _Collection
+else:
+    _Collection = object
+
+
+class CallBacks(_Collection):
+    """Lets a simulator be looked at while it runs."""
+
+    def collect_diagnostics(self, system: Any) -> Declaration:
+        """Announce a callback; say which by ``using(cls, *args, **kwargs)``.
+
+        Parameters
+        ----------
+        system
+            A system; or a list, a tuple or a dict of them; or ``...`` for all, as a tuple.
+        """
+        if system is Ellipsis:
+            system = tuple(self.systems())
+        observed: Any
+        if isinstance(system, Mapping):
+            each, observed = tuple(system.values()), dict(system)
+        elif isinstance(system, list | tuple):
+            each, observed = tuple(system), system
+        else:
+            each, observed = (system,), self[self.get_system_index(system)]
+        declaration = self._declare("callbacks", "callback", CallBackBaseClass, *each)
+        declaration.observed = observed
+        return declaration

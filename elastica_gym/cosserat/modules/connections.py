@@ -1,0 +1,50 @@
+"""Joints, as a part of simulators."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..joint import ConnectionBase
+from .declaration import Declaration
+
+if TYPE_CHECKING:
+    from .base_system import BaseSystemCollection as _Collection
+else:
+    _Collection = object
+
+
+class Connections(_Collection):
+    """Lets a simulator connect systems by joints."""
+
+    def connect(
+        self, first_rod: Any, second_rod: Any, first_connect_idx: Any = (), second_connect_idx: Any = ()
+    ) -> Declaration:
+        """Announce a joint between two systems at two indices; say which by ``using(cls, *args, **kwargs)``.
+
+        Parameters
+        ----------
+        first_rod, second_rod
+            Rods or rigid bodies.
+        first_connect_idx, second_connect_idx : int or sequence of int
+            Node and element of each that are connected, counted from the end if negative. Several are
+            passed on as they are to a class of your own, and make as many joints of the built-in ones.
+
+        Raises
+        ------
+        TypeError
+            If the two indices are not of the same kind.
+        IndexError
+            If there is no such node.
+        """
+        kinds = [isinstance(each, int | np.integer) for each in (first_connect_idx, second_connect_idx)]
+        if kinds[0] != kinds[1]:
+            raise TypeError("first_connect_idx and second_connect_idx must be of the same kind, "
+                            f"not {first_connect_idx!r} and {second_connect_idx!r}")  # fmt: skip
+        for name, system, index in (("first_connect_idx", first_rod, first_connect_idx),
+                                    ("second_connect_idx", second_rod, second_connect_idx)):  # fmt: skip
+            for each in np.ravel(index):
+                if not -system.n_nodes <= each < system.n_nodes:
+                    raise IndexError(f"{name} must be from {-system.n_nodes} to {system.n_nodes - 1}, not {each}")
+        declaration = self._declare("connections", "joint", ConnectionBase, first_rod, second_rod)
+        declaration.indices = (first_connect_idx, second_connect_idx)
+        return declaration

@@ -1,0 +1,19 @@
+"""Contact, as a part of simulators."""
+
+from typing import TYPE_CHECKING, Any
+
+from ..contact_forces import NoContact
+from .declaration import Declaration
+
+if TYPE_CHECKING:
+    from .base_system import BaseSystemCollection as _Collection
+else:
+    _Collection = object
+
+
+class Contact(_Collection):
+    """Lets systems of a simulator touch."""
+
+    def detect_contact_between(self, first_system: Any, second_system: Any) -> Declaration:
+        """Announce that two systems may touch, or one itself; say how by ``using(cls, *args, **kwargs)``."""
+        return self._declare("contacts", "contact", NoContact, first_system, second_system)

@@ -1,0 +1,77 @@
+"""A feature that a user has announced, and the class that is to provide it."""
+
+import inspect
+from typing import Any
+
+
+class Declaration:
+    """What ``simulator.constrain(rod)`` and its like return: tell it which class to use, by ``using``.
+
+    Parameters
+    ----------
+    what : str
+        How errors call it, such as "constraint".
+    base : type
+        What the class must be derived from.
+    systems : tuple
+        What it acts on.
+
+    Attributes
+    ----------
+    indices : tuple
+        Where a joint is on its two systems.
+    observed
+        What a callback is shown.
+    """
+
+    def __init__(self, what: str, base: type, *systems: Any) -> None:
+        self.what, self.base, self.systems = what, base, systems
+        self.cls: type | None = None
+        self.args: tuple = ()
+        self.kwargs: dict[str, Any] = {}
+        self.indices: tuple[Any, Any] = ((), ())
+        self.observed: Any = systems
+
+    def using(self, cls: type, *args: Any, **kwargs: Any) -> "Declaration":
+        """Say which class provides the feature, and what it is made with at ``finalize``.
+
+        Raises
+        ------
+        TypeError
+            If the class is not derived from the right base.
+        RuntimeError
+            If one has been given already.
+        """
+        if not (isinstance(cls, type) and issubclass(cls, self.base)):
+            raise TypeError(f"{getattr(cls, '__name__', cls)} cannot be used as a {self.what}: "
+                            f"it must be derived from {self.base.__name__}")  # fmt: skip
+        if self.cls is not None:
+            raise RuntimeError(f"this {self.what} already uses {self.cls.__name__}; declare another for {cls.__name__}")
+        self.cls, self.args, self.kwargs = cls, args, kwargs
+        return self
+
+    def make(self, *first: Any, **more: Any) -> Any:
+        """Make the feature, with arguments that go before the user's and keywords that go with them.
+
+        Raises
+        ------
+        RuntimeError
+            If ``using`` was forgotten.
+        TypeError
+            If the class does not take the arguments.
+        """
+        if self.cls is None:
+            raise RuntimeError(f"a {self.what} was declared without a class; did you forget .using(...)?")
+        arguments = (*first, *self.args)
+        keywords = {**self.kwargs, **more}
+        try:
+            inspect.signature(self.cls).bind(*arguments, **keywords)
+        except TypeError as error:
+            raise TypeError(f"cannot make the {self.what} {self.cls.__name__}: {error}") from error
+        return self.cls(*arguments, **keywords)
+
+    def accepts(self, keyword: str) -> bool:
+        """Return whether the class takes a keyword when it is made."""
+        assert self.cls is not None
+        parameters = inspect.signature(self.cls).parameters
+        return keyword in parameters or any(p.kind is p.VAR_KEYWORD for p in parameters.values())

@@ -1,0 +1,19 @@
+"""Loads, as a part of simulators."""
+
+from typing import TYPE_CHECKING, Any
+
+from ..external_forces import NoForces
+from .declaration import Declaration
+
+if TYPE_CHECKING:
+    from .base_system import BaseSystemCollection as _Collection
+else:
+    _Collection = object
+
+
+class Forcing(_Collection):
+    """Lets a simulator load systems from outside."""
+
+    def add_forcing_to(self, system: Any) -> Declaration:
+        """Announce a load on a system; say which by ``using(cls, *args, **kwargs)``."""
+        return self._declare("forcing", "load", NoForces, system)

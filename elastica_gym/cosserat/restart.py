@@ -1,0 +1,67 @@
+"""Save a simulation and go on with it later, bit for bit."""
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+META = "meta.json"
+
+
+def save_state(
+    simulator: Any, directory: str | os.PathLike = "saved", time: float = 0.0, verbose: bool = False
+) -> None:
+    """Write motion and material of all systems to a folder, a file each.
+
+    Parameters
+    ----------
+    simulator : BaseSystemCollection
+        Finalized.
+    directory : path
+        Made if it is not there.
+    time : float
+        Time to remember [s].
+    verbose : bool
+        Whether to say so.
+    """
+    folder = Path(directory)
+    folder.mkdir(parents=True, exist_ok=True)
+    for path, system in _files(simulator, folder):
+        np.savez(path, **system._fields)
+    steps = int(simulator.simulation.state.step[0])
+    (folder / META).write_text(json.dumps({"time": float(time), "steps": steps}))
+    if verbose:
+        print(f"saved {len(list(_files(simulator, folder)))} systems at {time} s to {folder}")
+
+
+def load_state(simulator: Any, directory: str | os.PathLike = "saved", verbose: bool = False) -> float:
+    """Read what `save_state` wrote into a finalized simulator with the same systems, and return its time [s].
+
+    Raises
+    ------
+    FileNotFoundError
+        If a system has no file.
+    ValueError
+        If a file is of a system of another size.
+    """
+    folder = Path(directory)
+    meta = json.loads((folder / META).read_text())
+    for path, system in _files(simulator, folder):
+        with np.load(path) as data:
+            for name in system._fields:
+                if data[name].shape != system._fields[name].shape:
+                    raise ValueError(f"{path} holds {name} of shape {data[name].shape}, "
+                                     f"the simulator's is {system._fields[name].shape}")  # fmt: skip
+                system._fields[name][...] = data[name]
+    # directors are corrected by this count, so it belongs to the state
+    simulator.simulation.state.step[0] = meta["steps"]
+    if verbose:
+        print(f"loaded {folder} at {meta['time']} s")
+    return float(meta["time"])
+
+
+def _files(simulator: Any, folder: Path) -> list[tuple[Path, Any]]:
+    return [(folder / f"{type(system).__name__}_{number}.npz", system)
+            for number, system in enumerate(simulator.systems()) if hasattr(system, "_fields")]  # fmt: skip

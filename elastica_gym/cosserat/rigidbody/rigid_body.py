@@ -1,0 +1,136 @@
+"""What all rigid bodies have in common."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ..model import Array
+from ..rod.cosserat_rod import Field, _frozen
+from ..surroundings import Contact
+
+NOWHERE = Contact(stiffness=1.0)
+
+
+@dataclass(frozen=True)
+class LoweredBody:
+    """A rigid body under the names of `surroundings.Cylinder`; a sphere is a cylinder without length.
+
+    How it is touched is said pair by pair, so what the environments say body by body is left out.
+    """
+
+    length: float
+    radius: float
+    mass: float
+    inertia: Array
+    centre: Array
+    directors: Array
+    rods: Contact = NOWHERE
+    ground_stiffness: float = 0.0
+    ground_damping: float = 0.0
+    ground_friction: float = 0.0
+
+
+class RigidBodyBase:
+    """Base class of rigid bodies, which have one node and one element, at their centre of mass.
+
+    From ``finalize`` on, the arrays are views of the simulation's memory; mass and inertia are read there.
+
+    Attributes
+    ----------
+    position_collection, velocity_collection : Array
+        Of the centre of mass [m], [m/s], lab frame, (3, 1).
+    director_collection : Array
+        Rows d1, d2, d3 in the lab, (3, 3, 1).
+    omega_collection : Array
+        Angular velocity [rad/s], material frame, (3, 1).
+    external_forces, external_torques : Array
+        Loads on the centre [N], lab frame, and about it [N m], material frame, (3, 1).
+    mass_second_moment_of_inertia : Array
+        [kg m^2], diagonal, (3, 3, 1).
+    inv_mass_second_moment_of_inertia : Array
+        Its inverse, (3, 3, 1). Read-only.
+    acceleration_collection, alpha_collection : Array
+        Accelerations by the loads of the last kick [m/s^2], [rad/s^2], (3, 1). Read-only.
+    mass, volume, density, length, radius : float
+        [kg], [m^3], [kg/m^3], [m], [m]
+    """
+
+    REQUISITE_MODULES: ClassVar[list[type]] = []
+    n_elems = n_nodes = 1
+    ring_rod_flag = False
+
+    position_collection = Field()
+    velocity_collection = Field()
+    director_collection = Field()
+    omega_collection = Field()
+    external_forces = Field()
+    external_torques = Field()
+    mass_second_moment_of_inertia = Field()
+
+    density: float
+    volume: float
+    length: float
+    radius: float
+    mass: float
+
+    def _set_up(self, position: Array, directors: Array, inertia: Array) -> None:
+        self._fields: dict[str, Array] = {name: np.zeros((3, 1)) for name in (
+            "velocity_collection", "omega_collection", "external_forces", "external_torques")}  # fmt: skip
+        self._fields["position_collection"] = np.array(position, dtype=np.float64).reshape(3, 1)
+        self._fields["director_collection"] = directors.reshape(3, 3, 1)
+        self._fields["mass_second_moment_of_inertia"] = np.diag(inertia)[:, :, None]
+
+    @property
+    def inv_mass_second_moment_of_inertia(self) -> Array:  # noqa: D102
+        return _frozen(np.linalg.inv(self.mass_second_moment_of_inertia[..., 0])[:, :, None])
+
+    @property
+    def acceleration_collection(self) -> Array:  # noqa: D102
+        return _frozen(self.external_forces / self.mass)
+
+    @property
+    def alpha_collection(self) -> Array:  # noqa: D102
+        J, w = self.mass_second_moment_of_inertia[..., 0], self.omega_collection
+        turn = np.cross(J @ w, w, axis=0) + self.external_torques
+        return _frozen(np.linalg.solve(J, turn))
+
+    def compute_position_center_of_mass(self) -> Array:
+        """Return the centre of mass [m], (3,)."""
+        return self.position_collection[..., 0].copy()
+
+    def compute_translational_energy(self) -> float:
+        """Return m v^2/2 [J]."""
+        return 0.5 * self.mass * float((self.velocity_collection**2).sum())
+
+    def compute_rotational_energy(self) -> float:
+        """Return w . J w/2 [J]."""
+        w = self.omega_collection[:, 0]
+        return 0.5 * float(w @ self.mass_second_moment_of_inertia[..., 0] @ w)
+
+    def _lowered(self) -> LoweredBody:
+        """Return what a Model needs to know.
+
+        Raises
+        ------
+        ValueError
+            If the inertia is not diagonal.
+        """
+        J = self.mass_second_moment_of_inertia[..., 0]
+        if np.count_nonzero(J) > np.count_nonzero(np.diag(J)):
+            raise ValueError("mass_second_moment_of_inertia must be diagonal")
+        return LoweredBody(
+            length=self._axis_length, radius=self.radius, mass=self.mass, inertia=np.diag(J).copy(),
+            centre=self.position_collection[:, 0], directors=self.director_collection[..., 0],
+        )  # fmt: skip
+
+    @property
+    def _axis_length(self) -> float:
+        """From end to end, without domes."""
+        return self.length
+
+    def _move(self, memory: dict[str, Array]) -> None:
+        """Copy fields to other memory and use that from now on."""
+        for name, target in memory.items():
+            target[...] = self._fields[name]
+        self._fields = {**self._fields, **memory}

@@ -1,0 +1,5 @@
+"""`rigid_body` by its name in 1.0."""
+
+from .rigid_body import RigidBodyBase
+
+__all__ = ["RigidBodyBase"]

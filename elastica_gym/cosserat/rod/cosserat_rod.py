@@ -1,0 +1,499 @@
+"""The documented rod: a Cosserat rod with its attributes as arrays, in PyElastica's names."""
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..model import Array
+from . import strain
+from .description import SHEAR_CORRECTION, require_not_negative, require_positive
+from .rod_base import RodBase
+
+MATERIAL = (
+    "rest_lengths", "rest_voronoi_lengths", "density", "volume", "mass", "mass_second_moment_of_inertia",
+    "inv_mass_second_moment_of_inertia", "shear_matrix", "bend_matrix", "dissipation_constant_for_forces",
+    "dissipation_constant_for_torques",
+)  # fmt: skip
+"""Attributes that a simulation reads when it is entered, kept in one piece of memory."""
+
+TOLERANCE = 1e-8
+"""How far given positions and directors may be from what they should be"""
+
+
+class Field:
+    """An array attribute that keeps its memory: assigning copies, after a check of the shape."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, rod: Any, owner: type | None = None) -> Any:
+        return self if rod is None else rod._fields[self.name]
+
+    def __set__(self, rod: Any, value: ArrayLike) -> None:
+        target, given = rod._fields[self.name], np.asarray(value, dtype=np.float64)
+        if given.shape not in (target.shape, ()):
+            raise ValueError(f"{self.name} must have shape {target.shape}, not {given.shape}")
+        target[...] = given
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """A rod's attributes under the names of `Continuum`, the matrices reduced to their diagonals."""
+
+    n_elements: int
+    position: Array
+    directors: Array
+    radius: Array
+    rest_kappa: Array
+    rest_sigma: Array
+    rest_length: Array
+    rest_voronoi_length: Array
+    shear_stiffness: Array
+    bend_stiffness: Array
+    nodal_mass: Array
+    inv_nodal_mass: Array
+    inertia: Array
+    inv_inertia: Array
+    viscosity: Array
+    torque_viscosity: Array
+    damping_rate: float = 0.0
+
+    def closed(self) -> "Lowered":
+        """Return an open rod that a ring can be computed as, with its first element again at the end.
+
+        That *image* has no stiffness, inertia or mass, so it moves nothing and does not move; what it is
+        pushed with belongs to the first element.
+        """
+        def again(values: Array, n: int = 1) -> Array:
+            return np.concatenate([values, values[..., :n]], axis=-1)
+
+        def nothing(values: Array, n: int = 1) -> Array:
+            return np.concatenate([values, np.zeros_like(values[..., :n])], axis=-1)
+
+        return Lowered(
+            n_elements=self.n_elements + 1, position=again(self.position, 2), directors=again(self.directors),
+            radius=again(self.radius), rest_kappa=self.rest_kappa, rest_sigma=again(self.rest_sigma),
+            rest_length=again(self.rest_length), rest_voronoi_length=self.rest_voronoi_length,
+            shear_stiffness=nothing(self.shear_stiffness), bend_stiffness=self.bend_stiffness,
+            nodal_mass=again(self.nodal_mass, 2), inv_nodal_mass=nothing(self.inv_nodal_mass, 2),
+            inertia=nothing(self.inertia), inv_inertia=nothing(self.inv_inertia), viscosity=nothing(self.viscosity),
+            torque_viscosity=nothing(self.torque_viscosity),
+        )  # fmt: skip
+
+    def opened(self) -> "Lowered":
+        """Return a ring cut open, as `stable_time_step` can judge it."""
+        return replace(self, bend_stiffness=self.bend_stiffness[:, :-1],
+                       nodal_mass=np.append(self.nodal_mass, self.nodal_mass[0]))  # fmt: skip
+
+
+class CosseratRod(RodBase):
+    """A Cosserat rod of n elements; make one with `straight_rod` or `ring_rod`.
+
+    The arrays below can be read, changed in place and assigned at any time. From `finalize` on, those
+    of motion and rest strain are views of the simulation's own memory; those of material are read by
+    it whenever compiled code is entered, which is at the start of `integrate` and after callbacks.
+
+    Attributes
+    ----------
+    n_elems, n_nodes : int
+        Number of elements n, and of nodes: n + 1, on a ring n.
+    position_collection, velocity_collection : Array
+        Of nodes [m], [m/s], lab frame, (3, n + 1).
+    director_collection : Array
+        Rows d1, d2, d3 of each element, (3, 3, n).
+    omega_collection : Array
+        Angular velocity of elements [rad/s], material frame, (3, n).
+    rest_sigma : Array
+        Shear and stretch strain at rest, (3, n).
+    rest_kappa : Array
+        Curvature and twist at rest [1/m], (3, n - 1); on a ring (3, n).
+    external_forces, external_torques : Array
+        Loads from outside, on nodes [N], lab frame, (3, n + 1), and on elements [N m], material frame,
+        (3, n). What is added between steps acts in the next one; they are cleared after each.
+    rest_lengths, rest_voronoi_lengths : Array
+        Lengths at rest, of elements (n,) and between their centres (n - 1,) [m].
+    density, volume : Array
+        Of elements [kg/m^3], [m^3], (n,).
+    mass : Array
+        Of nodes [kg], (n + 1,).
+    mass_second_moment_of_inertia, inv_mass_second_moment_of_inertia : Array
+        Of elements [kg m^2] and its inverse, diagonal, (3, 3, n).
+    shear_matrix, bend_matrix : Array
+        Stiffness of shear and stretch [N], (3, 3, n), and of bending and twist [N m^2], (3, 3, n - 1).
+        Diagonal.
+    dissipation_constant_for_forces, dissipation_constant_for_torques : Array
+        The documented ``nu`` of 0.2.x, (n,) [kg/(m s)], [kg m/s].
+    lengths, tangents, radius, dilatation, dilatation_rate, voronoi_dilatation, sigma, kappa, internal_stress,
+    internal_couple, internal_forces, internal_torques, damping_forces, damping_torques : Array
+        What follows from the others, computed when read. Read-only.
+    acceleration_collection, alpha_collection : Array
+        Accelerations in the last kick [m/s^2], [rad/s^2]. Read-only.
+    """
+
+    REQUISITE_MODULES: ClassVar[list[type]] = []
+
+    position_collection = Field()
+    velocity_collection = Field()
+    director_collection = Field()
+    omega_collection = Field()
+    rest_sigma = Field()
+    rest_kappa = Field()
+    external_forces = Field()
+    external_torques = Field()
+    rest_lengths = Field()
+    rest_voronoi_lengths = Field()
+    density = Field()
+    volume = Field()
+    mass = Field()
+    mass_second_moment_of_inertia = Field()
+    inv_mass_second_moment_of_inertia = Field()
+    shear_matrix = Field()
+    bend_matrix = Field()
+    dissipation_constant_for_forces = Field()
+    dissipation_constant_for_torques = Field()
+
+    def __init__(
+        self, *, position: Array, directors: Array, radius: Array, density: Array, youngs_modulus: float,
+        shear_modulus: float, nu: float, nu_for_torques: float, rest_sigma: Array, rest_kappa: Array, is_ring: bool,
+    ) -> None:  # fmt: skip
+        n = directors.shape[2]
+        self.n_elems, self.n_nodes, self.ring_rod_flag = n, position.shape[1], is_ring
+        edges = _edges(position, is_ring)
+        length = np.linalg.norm(edges, axis=0)
+        area = np.pi * radius**2
+        second_moment = np.outer([1.0, 1.0, 2.0], area**2 / (4.0 * np.pi))
+        before, after = strain.between(length, is_ring)
+        shear = np.outer([SHEAR_CORRECTION * shear_modulus] * 2 + [youngs_modulus], area)
+        bend = np.array([youngs_modulus, youngs_modulus, shear_modulus])[:, None] * second_moment * length
+        inertia = density * length * second_moment
+        element_mass = density * area * length
+        self._fields: dict[str, Array] = {
+            "position_collection": position, "velocity_collection": np.zeros_like(position),
+            "director_collection": directors, "omega_collection": np.zeros((3, n)),
+            "rest_sigma": rest_sigma, "rest_kappa": rest_kappa,
+            "external_forces": np.zeros_like(position), "external_torques": np.zeros((3, n)),
+            "net_forces": np.zeros_like(position), "net_torques": np.zeros((3, n)),
+            "rest_lengths": length, "rest_voronoi_lengths": 0.5 * (before + after),
+            "density": density, "volume": area * length,
+            "mass": strain.quadrature(element_mass, is_ring),
+            "mass_second_moment_of_inertia": _diagonal(inertia),
+            "inv_mass_second_moment_of_inertia": _diagonal(1.0 / inertia),
+            "shear_matrix": _diagonal(shear),
+            "bend_matrix": _diagonal(np.add(*strain.between(bend, is_ring)) / (before + after)),
+            "dissipation_constant_for_forces": np.full(n, nu),
+            "dissipation_constant_for_torques": np.full(n, nu_for_torques),
+        }  # fmt: skip
+
+    @classmethod
+    def straight_rod(
+        cls, n_elements: int, start: ArrayLike, direction: ArrayLike, normal: ArrayLike, base_length: float,
+        base_radius: ArrayLike, density: ArrayLike, nu: float | None = None, youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None, *, nu_for_torques: float | None = None, shear_modulus: float | None = None,
+        position: ArrayLike | None = None, directors: ArrayLike | None = None, rest_sigma: ArrayLike | None = None,
+        rest_kappa: ArrayLike | None = None,
+    ) -> Self:  # fmt: skip
+        """Return a straight rod of equal elements, or one through given nodes.
+
+        Parameters
+        ----------
+        n_elements : int
+            Number of elements n, at least 2.
+        start : array_like
+            First node [m], (3,).
+        direction, normal : array_like
+            Along the rod, and d1 perpendicular to it; of any length, (3,).
+        base_length : float
+            [m]
+        base_radius, density : float or array_like
+            [m], [kg/m^3]; one for all elements or one each, (n,).
+        nu, nu_for_torques : float
+            Damping of 0.2.x: force per velocity and length [kg/(m s)], torque per angular velocity and
+            length [kg m/s]; the second is the first unless given. 1.0 has dampers instead.
+        youngs_modulus, shear_modulus : float
+            Y and G [Pa]. Without G, it follows from ``poisson_ratio`` by the rule of 0.2.x, Y/(1 + ratio),
+            with a ratio of 1/2 if ``nu`` is given; with neither it is that of 1.0, Y/3.
+        position, directors : array_like
+            Nodes [m], (3, n + 1), and directors, (3, 3, n), instead of straight ones.
+        rest_sigma, rest_kappa : array_like
+            Strains at rest, (3, n), and curvatures at rest [1/m], (3, n - 1); zero unless given.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument cannot be: names it, its value and what is allowed.
+        """
+        if n_elements < 2:
+            raise ValueError(f"n_elements must be at least 2, not {n_elements}")
+        require_positive("base_length", base_length)
+        tangent = _unit("direction", direction)
+        first = _vector("start", start)[:, None]
+        if position is None:
+            nodes = first + base_length * tangent[:, None] * np.linspace(0.0, 1.0, n_elements + 1)
+        else:
+            nodes = _array("position", position, (3, n_elements + 1))
+            if np.abs(nodes[:, :1] - first).max() > TOLERANCE:
+                raise ValueError(f"start must be the first node of position, {nodes[:, 0]}, not {first[:, 0]}")
+        return cls._made(
+            nodes, False, normal, base_radius, density, nu, youngs_modulus, poisson_ratio, nu_for_torques,
+            shear_modulus, directors, rest_sigma, rest_kappa,
+        )  # fmt: skip
+
+    @classmethod
+    def ring_rod(
+        cls, n_elements: int, ring_center_position: ArrayLike, direction: ArrayLike, normal: ArrayLike,
+        base_length: float, base_radius: ArrayLike, density: ArrayLike, nu: float | None = None,
+        youngs_modulus: float | None = None, poisson_ratio: float | None = None, *,
+        nu_for_torques: float | None = None, shear_modulus: float | None = None, position: ArrayLike | None = None,
+        directors: ArrayLike | None = None, rest_sigma: ArrayLike | None = None, rest_kappa: ArrayLike | None = None,
+    ) -> Self:  # fmt: skip
+        """Return a closed rod in the plane across ``normal``: a circle, or through given nodes.
+
+        A ring of n elements has as many nodes and Voronoi points, so ``position`` and ``rest_kappa``
+        are (3, n). The first node lies along direction x normal from the centre, and the ring runs
+        towards ``direction`` from there. The other parameters are those of `straight_rod`.
+        """
+        if n_elements < 3:
+            raise ValueError(f"n_elements must be at least 3, not {n_elements}")
+        require_positive("base_length", base_length)
+        if position is None:
+            d, up = _unit("direction", direction)[:, None], _unit("normal", normal)[:, None]
+            angle = 2.0 * np.pi * np.arange(n_elements) / n_elements
+            spoke = np.cos(angle) * np.cross(d, up, axis=0) + np.sin(angle) * d
+            nodes = _vector("ring_center_position", ring_center_position)[:, None]
+            nodes = nodes + base_length / (2.0 * np.pi) * spoke
+        else:
+            nodes = _array("position", position, (3, n_elements))
+        return cls._made(
+            nodes, True, normal, base_radius, density, nu, youngs_modulus, poisson_ratio, nu_for_torques,
+            shear_modulus, directors, rest_sigma, rest_kappa,
+        )  # fmt: skip
+
+    @classmethod
+    def _made(
+        cls, nodes: Array, is_ring: bool, normal: ArrayLike, radius: ArrayLike, density: ArrayLike, nu: float | None,
+        youngs_modulus: float | None, poisson_ratio: float | None, nu_for_torques: float | None,
+        shear_modulus: float | None, directors: ArrayLike | None, rest_sigma: ArrayLike | None,
+        rest_kappa: ArrayLike | None,
+    ) -> Self:  # fmt: skip
+        """Check what both constructors take, and make the rod."""
+        if youngs_modulus is None:
+            raise TypeError("youngs_modulus is missing; give it in Pa")
+        require_positive("youngs_modulus", youngs_modulus)
+        edges = _edges(nodes, is_ring)
+        n, joints = edges.shape[1], edges.shape[1] - (0 if is_ring else 1)
+        require_positive("element length", float(np.linalg.norm(edges, axis=0).min()))
+        G = _shear_modulus(youngs_modulus, shear_modulus, poisson_ratio, nu)
+        force_nu = 0.0 if nu is None else nu
+        torque_nu = force_nu if nu_for_torques is None else nu_for_torques
+        require_not_negative("nu", force_nu)
+        require_not_negative("nu_for_torques", torque_nu)
+        return cls(
+            position=nodes, directors=_directors(edges, normal, directors), radius=_each("base_radius", radius, n),
+            density=_each("density", density, n), youngs_modulus=float(youngs_modulus), shear_modulus=G, nu=force_nu,
+            nu_for_torques=torque_nu, is_ring=is_ring,
+            rest_sigma=np.zeros((3, n)) if rest_sigma is None else _array("rest_sigma", rest_sigma, (3, n)),
+            rest_kappa=np.zeros((3, joints)) if rest_kappa is None else _array("rest_kappa", rest_kappa, (3, joints)),
+        )  # fmt: skip
+
+    # what follows from the arrays
+
+    @property
+    def _edges(self) -> Array:
+        """From node to node [m], (3, n)."""
+        return _edges(self.position_collection, self.ring_rod_flag)
+
+    @property
+    def lengths(self) -> Array:  # noqa: D102
+        return _frozen(np.linalg.norm(self._edges, axis=0))
+
+    @property
+    def tangents(self) -> Array:  # noqa: D102
+        edges = self._edges
+        return _frozen(edges / np.linalg.norm(edges, axis=0))
+
+    @property
+    def radius(self) -> Array:  # type: ignore[override]  # noqa: D102
+        return _frozen(np.sqrt(self.volume / (np.pi * self.lengths)))
+
+    @property
+    def dilatation(self) -> Array:  # type: ignore[override]  # noqa: D102
+        return _frozen(self.lengths / self.rest_lengths)
+
+    @property
+    def dilatation_rate(self) -> Array:  # noqa: D102
+        rates = _edges(self.velocity_collection, self.ring_rod_flag)
+        return _frozen((self._edges * rates).sum(axis=0) / (self.lengths * self.rest_lengths))
+
+    @property
+    def voronoi_dilatation(self) -> Array:  # noqa: D102
+        return _frozen(0.5 * np.add(*strain.between(self.lengths, self.ring_rod_flag)) / self.rest_voronoi_lengths)
+
+    @property
+    def sigma(self) -> Array:  # type: ignore[override]  # noqa: D102
+        return _frozen(strain.shear(self.director_collection, self._edges, self.rest_lengths))
+
+    @property
+    def kappa(self) -> Array:  # type: ignore[override]  # noqa: D102
+        return _frozen(strain.curvature(self.director_collection, self.rest_voronoi_lengths, self.ring_rod_flag))
+
+    @property
+    def internal_stress(self) -> Array:  # noqa: D102
+        return _frozen(strain.apply(self.shear_matrix, self.sigma - self.rest_sigma))
+
+    @property
+    def internal_couple(self) -> Array:  # noqa: D102
+        return _frozen(strain.apply(self.bend_matrix, self.kappa - self.rest_kappa))
+
+    @property
+    def internal_forces(self) -> Array:  # noqa: D102
+        stress = strain.apply_transposed(self.director_collection, self.internal_stress / self.dilatation)
+        return _frozen(strain.difference(stress, self.ring_rod_flag))
+
+    @property
+    def internal_torques(self) -> Array:  # noqa: D102
+        return _frozen(strain.internal_torques(
+            directors=self.director_collection, omega=self.omega_collection, edges=self._edges,
+            edge_rates=_edges(self.velocity_collection, self.ring_rod_flag), rest_lengths=self.rest_lengths,
+            stress=self.internal_stress, kappa=self.kappa, couple=self.internal_couple,
+            voronoi_dilatation=self.voronoi_dilatation, rest_voronoi_lengths=self.rest_voronoi_lengths,
+            inertia=self.mass_second_moment_of_inertia, is_ring=self.ring_rod_flag,
+        ))  # fmt: skip
+
+    @property
+    def damping_forces(self) -> Array:  # noqa: D102
+        ends = self.velocity_collection if not self.ring_rod_flag else _closed(self.velocity_collection)
+        force = self.dissipation_constant_for_forces * self.lengths * 0.5 * (ends[:, 1:] + ends[:, :-1])
+        return _frozen(strain.quadrature(force, self.ring_rod_flag))
+
+    @property
+    def damping_torques(self) -> Array:  # noqa: D102
+        return _frozen(self.dissipation_constant_for_torques * self.omega_collection * self.lengths)
+
+    @property
+    def acceleration_collection(self) -> Array:  # noqa: D102
+        return _frozen(self._fields["net_forces"] / self.mass)
+
+    @property
+    def alpha_collection(self) -> Array:  # noqa: D102
+        alpha = strain.apply(self.inv_mass_second_moment_of_inertia, self._fields["net_torques"])
+        return _frozen(alpha * self.dilatation)
+
+    # between the rod and its simulation
+
+    def as_continuum(self) -> Lowered:
+        """Return the rod as the physics knows it, a ring cut open."""
+        return self._lowered().opened() if self.ring_rod_flag else self._lowered()
+
+    def _lowered(self) -> Lowered:
+        """Return what a Model needs to know.
+
+        Raises
+        ------
+        ValueError
+            If a matrix is not diagonal, or what must be positive is not.
+        """
+        for name in ("rest_lengths", "rest_voronoi_lengths", "volume", "mass"):
+            require_positive(f"smallest of {name}", float(getattr(self, name).min()))
+        return Lowered(
+            n_elements=self.n_elems, position=self.position_collection, directors=self.director_collection,
+            radius=np.sqrt(self.volume / (np.pi * self.rest_lengths)), rest_kappa=self.rest_kappa,
+            rest_sigma=self.rest_sigma, rest_length=self.rest_lengths, rest_voronoi_length=self.rest_voronoi_lengths,
+            shear_stiffness=_diagonal_of("shear_matrix", self.shear_matrix),
+            bend_stiffness=_diagonal_of("bend_matrix", self.bend_matrix), nodal_mass=self.mass,
+            inv_nodal_mass=1.0 / self.mass,
+            inertia=_diagonal_of("mass_second_moment_of_inertia", self.mass_second_moment_of_inertia),
+            inv_inertia=_diagonal_of("inv_mass_second_moment_of_inertia", self.inv_mass_second_moment_of_inertia),
+            viscosity=self.dissipation_constant_for_forces, torque_viscosity=self.dissipation_constant_for_torques,
+        )  # fmt: skip
+
+    def _move(self, memory: dict[str, Array]) -> None:
+        """Copy fields to other memory and use that from now on."""
+        for name, target in memory.items():
+            target[...] = self._fields[name]
+        self._fields = {**self._fields, **memory}
+
+
+def _frozen(values: Array) -> Array:
+    """Mark an array as read-only: what is computed when read cannot be changed."""
+    values.flags.writeable = False
+    return values
+
+
+def _closed(values: Array) -> Array:
+    return np.concatenate([values, values[..., :1]], axis=-1)
+
+
+def _edges(position: Array, is_ring: bool) -> Array:
+    return np.diff(_closed(position) if is_ring else position, axis=1)
+
+
+def _diagonal(rows: Array) -> Array:
+    """Return diagonal matrices, (3, n) to (3, 3, n)."""
+    return np.eye(3)[:, :, None] * rows[:, None, :]
+
+
+def _diagonal_of(name: str, matrices: Array) -> Array:
+    rows = np.einsum("iik->ik", matrices)
+    if np.count_nonzero(matrices) > np.count_nonzero(rows):
+        raise ValueError(f"{name} must be diagonal for each element; entries off the diagonal are not supported")
+    return rows
+
+
+def _shear_modulus(Y: float, G: float | None, poisson_ratio: float | None, nu: float | None) -> float:
+    if G is not None:
+        require_positive("shear_modulus", G)
+        return float(G)
+    if poisson_ratio is None and nu is None:
+        return Y / 3.0
+    ratio = 0.5 if poisson_ratio is None else poisson_ratio
+    if not ratio > -1.0:
+        raise ValueError(f"poisson_ratio must be above -1, not {ratio}")
+    return Y / (1.0 + ratio)
+
+
+def _directors(edges: Array, normal: ArrayLike, directors: ArrayLike | None) -> Array:
+    """Return given directors, checked, or those with d3 along the elements and d1 along ``normal``."""
+    n = edges.shape[1]
+    tangents = edges / np.linalg.norm(edges, axis=0)
+    if directors is not None:
+        Q = _array("directors", directors, (3, 3, n))
+        off = np.abs(np.einsum("ijk,ljk->ilk", Q, Q) - np.eye(3)[:, :, None]).max()
+        if off > TOLERANCE or (np.linalg.det(Q.T) < 0.0).any():
+            raise ValueError("directors must be right-handed orthonormal rows d1, d2, d3; "
+                             f"their products are off by {off:.3g}")  # fmt: skip
+        return Q
+    d1 = np.repeat(_unit("normal", normal)[:, None], n, axis=1)
+    slant = np.abs((d1 * tangents).sum(axis=0)).max()
+    if slant > TOLERANCE:
+        raise ValueError(f"normal must be perpendicular to the rod; the cosine between them is {slant:.3g}")
+    return np.stack([d1, np.cross(tangents, d1, axis=0), tangents])
+
+
+def _each(name: str, value: ArrayLike, n: int) -> Array:
+    values = np.asarray(value, dtype=np.float64)
+    if values.shape not in ((), (1,), (n,)):
+        raise ValueError(f"{name} must be one number or {n}, one for each element; its shape is {values.shape}")
+    require_positive(f"smallest {name}", float(values.min()))
+    return np.broadcast_to(values, (n,)).copy()
+
+
+def _array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
+    array = np.array(value, dtype=np.float64, order="C")
+    if array.shape != shape:
+        raise ValueError(f"{name} must have shape {shape}, not {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite, but has {int((~np.isfinite(array)).sum())} entries that are not")
+    return array
+
+
+def _vector(name: str, value: ArrayLike) -> Array:
+    return _array(name, np.ravel(np.asarray(value, dtype=np.float64)), (3,))
+
+
+def _unit(name: str, value: ArrayLike) -> Array:
+    vector = _vector(name, value)
+    size = float(np.linalg.norm(vector))
+    require_positive(f"length of {name}", size)
+    return vector / size

@@ -1,0 +1,201 @@
+"""Twist, writhe and link of rods (Klenin and Langowski 2000, methods 2a and 1a)."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..model import Array
+
+SEGMENTS = ("next_tangent", "end_to_end", "net_tangent")
+
+
+class KnotTheoryCompatibleProtocol(Protocol):
+    """What `KnotTheory` needs of a rod: nodes (3, n + 1), directors (3, 3, n), radii (n,), rest lengths (n,)."""
+
+    @property
+    def position_collection(self) -> Array: ...  # noqa: D102
+    @property
+    def director_collection(self) -> Array: ...  # noqa: D102
+    @property
+    def radius(self) -> Array: ...  # noqa: D102
+    @property
+    def rest_lengths(self) -> Array: ...  # noqa: D102
+
+
+class KnotTheory:
+    """Twist, writhe and link as methods.
+
+    An open rod is closed at infinity: a segment as long as the rod is added to each of its ends.
+    ``type_of_additional_segment`` says in which direction:
+
+    - ``"next_tangent"``: along the tangents at the ends;
+    - ``"end_to_end"``: along the line from the first node to the last;
+    - ``"net_tangent"``: along the line between the mean nodes of the two halves.
+
+    Anything else adds none.
+    """
+
+    position_collection: Array
+    director_collection: Array
+    radius: Array
+    rest_lengths: Array
+
+    def compute_twist(self) -> float:
+        """Return the twist [turns]."""
+        total, _ = compute_twist(self.position_collection[None], self.director_collection[None, 0])
+        return float(total[0])
+
+    def compute_writhe(self, type_of_additional_segment: str = "next_tangent") -> float:
+        """Return the writhe [turns]."""
+        length = float(self.rest_lengths.sum())
+        return float(compute_writhe(self.position_collection[None], length, type_of_additional_segment)[0])
+
+    def compute_link(self, type_of_additional_segment: str = "next_tangent") -> float:
+        """Return the link, twist plus writhe [turns]."""
+        length = float(self.rest_lengths.sum())
+        return float(compute_link(self.position_collection[None], self.director_collection[None, 0],
+                                  self.radius[None], length, type_of_additional_segment)[0])  # fmt: skip
+
+
+def compute_twist(center_line: ArrayLike, normal_collection: ArrayLike) -> tuple[Array, Array]:
+    """Return how often the normals turn around the centre line (Klenin and Langowski 2000, method 2a).
+
+    Parameters
+    ----------
+    center_line : array_like
+        Nodes over time, (time, 3, n + 1).
+    normal_collection : array_like
+        Normals d1 of elements over time, (time, 3, n).
+
+    Returns
+    -------
+    total, local : Array
+        Twist [turns]: summed, (time,), and between neighbouring elements, (time, n - 1).
+    """
+    line, normals = np.asarray(center_line, dtype=float), np.asarray(normal_collection, dtype=float)
+    tangents = np.diff(line, axis=2)
+    tangents /= np.linalg.norm(tangents, axis=1, keepdims=True)
+    normals = normals - tangents * (normals * tangents).sum(axis=1, keepdims=True)
+    before, after = tangents[..., :-1], tangents[..., 1:]
+    carried = _turned(normals[..., :-1], before, after)
+    sine = (after * np.cross(carried, normals[..., 1:], axis=1)).sum(axis=1)
+    cosine = (carried * normals[..., 1:]).sum(axis=1)
+    local = np.arctan2(sine, cosine) / (2.0 * np.pi)
+    return local.sum(axis=1), local
+
+
+def _turned(vectors: Array, before: Array, after: Array) -> Array:
+    """Return vectors turned as little as takes unit tangents ``before`` to ``after``."""
+    axis = np.cross(before, after, axis=1)
+    cosine = (before * after).sum(axis=1, keepdims=True)
+    # Rodrigues' formula, (1 - c)/s^2 = 1/(1 + c)
+    along = axis * (axis * vectors).sum(axis=1, keepdims=True) / np.maximum(1.0 + cosine, 1e-12)
+    return vectors * cosine + np.cross(axis, vectors, axis=1) + along
+
+
+def compute_writhe(
+    center_line: ArrayLike, segment_length: float, type_of_additional_segment: str = "next_tangent"
+) -> Array:
+    """Return the writhe of open curves (Klenin and Langowski 2000, method 1a).
+
+    Parameters
+    ----------
+    center_line : array_like
+        Nodes over time, (time, 3, n + 1).
+    segment_length : float
+        Length of the segments that are added at the ends [m].
+    type_of_additional_segment : str
+        As in `KnotTheory`.
+
+    Returns
+    -------
+    Array
+        Writhe [turns], (time,).
+    """
+    line = _lengthened(np.asarray(center_line, dtype=float), segment_length, type_of_additional_segment)
+    return np.array([_gauss(nodes.T) for nodes in line])
+
+
+def compute_link(
+    center_line: ArrayLike, normal_collection: ArrayLike, radius: ArrayLike, segment_length: float,
+    type_of_additional_segment: str = "next_tangent",
+) -> Array:  # fmt: skip
+    """Return the link of a centre line and the line at a radius from it along the normals.
+
+    Parameters
+    ----------
+    center_line : array_like
+        Nodes over time, (time, 3, n + 1).
+    normal_collection : array_like
+        Normals d1 of elements over time, (time, 3, n).
+    radius : array_like
+        Radii of elements over time, (time, n).
+    segment_length : float
+        Length of the segments that are added at the ends [m].
+    type_of_additional_segment : str
+        As in `KnotTheory`.
+
+    Returns
+    -------
+    Array
+        Link [turns], (time,).
+    """
+    line, normals = np.asarray(center_line, dtype=float), np.asarray(normal_collection, dtype=float)
+    offset = np.asarray(radius, dtype=float)[:, None, :] * normals
+    # a node has the normal of the element that it begins, the last that of the element it ends
+    other = line + np.concatenate([offset, offset[..., -1:]], axis=2)
+    ends = [_lengthened(line, segment_length, type_of_additional_segment)]
+    ends.append(_lengthened_like(other, ends[0]) if ends[0].shape != line.shape else other)
+    return np.array([_gauss(one.T, two.T) for one, two in zip(*ends, strict=True)])
+
+
+def _lengthened(line: Array, length: float, kind: str) -> Array:
+    """Return curves with a segment added at each end, (time, 3, n + 1) to (time, 3, n + 3)."""
+    if kind not in SEGMENTS:
+        return line
+    half = line.shape[2] // 2
+    if kind == "next_tangent":
+        first, last = line[..., 0] - line[..., 1], line[..., -1] - line[..., -2]
+    elif kind == "end_to_end":
+        last = line[..., -1] - line[..., 0]
+        first = -last
+    else:
+        last = line[..., half:].mean(axis=2) - line[..., :half].mean(axis=2)
+        first = -last
+    first, last = (length * d / np.linalg.norm(d, axis=1, keepdims=True) for d in (first, last))
+    return np.concatenate([(line[..., 0] + first)[..., None], line, (line[..., -1] + last)[..., None]], axis=2)
+
+
+def _lengthened_like(line: Array, other: Array) -> Array:
+    """Return curves with the end segments of ``other``, parallel to them."""
+    first = line[..., 0] + other[..., 0] - other[..., 1]
+    last = line[..., -1] + other[..., -1] - other[..., -2]
+    return np.concatenate([first[..., None], line, last[..., None]], axis=2)
+
+
+def _gauss(one: Array, two: Array | None = None) -> float:
+    """Return the Gauss integral over 4 pi of two polygons, or of one with itself, nodes (n, 3)."""
+    itself = two is None
+    other = one if two is None else two
+    r13 = other[None, :-1] - one[:-1, None]
+    r14 = other[None, 1:] - one[:-1, None]
+    r23 = other[None, :-1] - one[1:, None]
+    r24 = other[None, 1:] - one[1:, None]
+    r12 = np.broadcast_to((one[1:] - one[:-1])[:, None], r13.shape)
+    r34 = np.broadcast_to((other[1:] - other[:-1])[None], r13.shape)
+    normals = [_unit(np.cross(a, b)) for a, b in ((r13, r14), (r14, r24), (r24, r23), (r23, r13))]
+    area = sum(np.arcsin(np.clip((a * b).sum(axis=-1), -1.0, 1.0))
+               for a, b in zip(normals, [*normals[1:], normals[0]], strict=True))  # fmt: skip
+    sign = np.sign((np.cross(r34, r12) * r13).sum(axis=-1))
+    integral = area * sign
+    if itself:
+        # a segment and its neighbours lie in a plane: no area, but for rounding
+        i, j = np.indices(integral.shape)
+        integral = np.where(np.abs(i - j) > 1, integral, 0.0)
+    return float(integral.sum() / (4.0 * np.pi))
+
+
+def _unit(vectors: Array) -> Array:
+    size = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 1e-300)

@@ -1,0 +1,261 @@
+"""Scene: what the documented library adds to a Model, as tables that its own compiled step reads.
+
+The environments need none of it, so their step does not carry it. Shapes are written as in `model`:
+L slots, and a letter for the number of rows of each table. A table without rows costs nothing.
+A *span* is the slots that a row acts on: first and last + 1. A *place* is the slot of a node or
+element of a rod, or -1 - b for rigid body b.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .model import Array, Index, Planes, Waves
+
+
+class PointLoads(NamedTuple):
+    """The P forces on single nodes and bodies. With t0 the ramp time, each is the sum of its parts."""
+
+    slot: Index
+    """Place, (P,) int64"""
+    ramp_time: Array
+    """t0 [s], (P,)"""
+    growing: Array
+    """Times min(1, t/t0) [N], (P, 3)"""
+    before: Array
+    """Until t0 [N], (P, 3)"""
+    cosine: Array
+    """From t0 on, times cos(omega (t - t0)) [N], (P, 3)"""
+    sine: Array
+    """From t0 on, times sin(omega (t - t0)) [N], (P, 3)"""
+    angular_frequency: Array
+    """omega [rad/s], (P,)"""
+
+
+class DeadLoads(NamedTuple):
+    """What is constant in the lab."""
+
+    has_force: bool
+    """Whether any force is not zero"""
+    has_torque: bool
+    """Whether any torque is not zero"""
+    force: Array
+    """On nodes [N], lab frame, (3, L)"""
+    torque: Array
+    """On elements [N m], lab frame, (3, L)"""
+    body_force: Array
+    """On bodies [N], lab frame, (B, 3)"""
+    body_torque: Array
+    """On bodies [N m], lab frame, (B, 3)"""
+
+
+class Flows(NamedTuple):
+    """The F viscous fluids around slender bodies (Gazzola et al. 2018, eq. 4.13)."""
+
+    span: Index
+    """Slots of the rod's elements, (F, 2) int64"""
+    viscosity: Array
+    """Dynamic viscosity mu of the fluid [Pa s], (F,)"""
+
+
+class Drag(NamedTuple):
+    """Forces and torques against velocities, by node and element."""
+
+    is_on: bool
+    """Whether any is not zero"""
+    force: Array
+    """Per velocity of the node [N s/m], (L,)"""
+    torque: Array
+    """Per angular velocity of the element [N m s], (L,)"""
+
+
+class Joints(NamedTuple):
+    """The C joints, each between a node and element one and a node and element two."""
+
+    node: Index
+    """Places of the two nodes, (C, 2) int64"""
+    element: Index
+    """Places of the two elements, (C, 2) int64"""
+    stiffness: Array
+    """Force per distance k [N/m], (C,)"""
+    damping: Array
+    """Force per relative velocity nu [N s/m], (C,)"""
+    hinge_stiffness: Array
+    """Torque that turns element two back into the plane across ``axis``, kt [N m], 0 for none; (C,)"""
+    axis: Array
+    """Unit normal of that plane, lab frame, (C, 3)"""
+    turn_stiffness: Array
+    """Torque per angle from the rest rotation, kt [N m], 0 for none; (C,)"""
+    turn_damping: Array
+    """Torque per relative angular velocity [N m s], (C,)"""
+    rest_rotation: Array
+    """C with Q1 = C Q2 at rest, (C, 3, 3)"""
+
+
+class Law(NamedTuple):
+    """How two things press and rub on each other where they overlap."""
+
+    stiffness: float
+    """Restoring force per overlap k [N/m]"""
+    damping: float
+    """Damping force per velocity of approach nu [N s/m]"""
+    friction: float
+    """Coefficient of Coulomb friction mu"""
+    slip_damping: float
+    """Force of friction per slip below the Coulomb bound c [N s/m]"""
+
+
+class BodyContacts(NamedTuple):
+    """The P pairs of a rod and a rigid body that may touch."""
+
+    span: Index
+    """Slots of the rod's elements, (P, 2) int64"""
+    body: Index
+    """Number of the body, (P,) int64"""
+    stiffness: Array
+    """Restoring force per overlap k [N/m], (P,)"""
+    damping: Array
+    """Damping force per velocity of approach nu [N s/m], (P,)"""
+    friction: Array
+    """Coefficient of Coulomb friction mu, (P,)"""
+    slip_damping: Array
+    """Force of friction per slip below the Coulomb bound c [N s/m], (P,)"""
+
+
+class RodContacts(NamedTuple):
+    """The G groups of rods that touch in the same way."""
+
+    stiffness: Array
+    """Restoring force per overlap k [N/m], (G,)"""
+    damping: Array
+    """Damping force per velocity of approach nu [N s/m], (G,)"""
+    rod_of: Index
+    """The rod that a slot belongs to, (L,) int64"""
+    may_touch: NDArray[np.bool_]
+    """Whether two rods touch each other, and on the diagonal themselves, (G, R, R) bool"""
+    span: Index
+    """Which part of ``order`` is a group's, (G, 2) int64"""
+    order: Index
+    """Slots of the elements in the order of a sweep: any order will do, the right one is the fastest; (E,) int64"""
+
+
+class Pins(NamedTuple):
+    """The N nodes and bodies whose motion is prescribed."""
+
+    slot: Index
+    """Place, (N,) int64"""
+    start_time: Array
+    """Time from which on the node is held [s]; until then it moves with ``velocity``; (N,)"""
+    velocity: Array
+    """Velocity before the start [m/s], lab frame, (N, 3)"""
+    axes: Array
+    """One for the lab axes along which it is held, else zero, (N, 3)"""
+    position: Array
+    """Where it is held [m], (N, 3)"""
+
+
+class Clamps(NamedTuple):
+    """The N elements and bodies whose rotation is prescribed."""
+
+    slot: Index
+    """Place, (N,) int64"""
+    start_time: Array
+    """Time from which on the element is held [s]; until then it turns with ``omega``; (N,)"""
+    omega: Array
+    """Angular velocity before the start [rad/s], material frame, (N, 3)"""
+    axes: Array
+    """One for the lab axes about which it does not turn, else zero, (N, 3)"""
+    has_directors: Array
+    """One if the directors are set, zero if only the angular velocity is, (N,)"""
+    directors: Array
+    """How it is held, (N, 3, 3)"""
+
+
+class Decay(NamedTuple):
+    """Damping of velocities by exponential decay, and what it comes to at the present time step."""
+
+    is_on: bool
+    """Whether any rate is not zero"""
+    is_dilating: bool
+    """Whether any dilating rate is not zero"""
+    node_rate: Array
+    """Of velocity [1/s], (L,)"""
+    element_rate: Array
+    """Of angular velocity [1/s], (L,)"""
+    dilating_rate: Array
+    """Of angular velocity, to be multiplied by the dilatation e [1/s], material frame, (3, L)"""
+    node_factor: Array
+    """exp(-rate dt) for nodes, (L,)"""
+    element_factor: Array
+    """exp(-rate dt) for elements, without the dilating part, (L,)"""
+
+
+class Filters(NamedTuple):
+    """The F filters of the shortest waves in velocities (Jeanmart and Winckelmans 2007)."""
+
+    span: Index
+    """Slots of the rod's nodes, (F, 2) int64"""
+    order: Index
+    """How often the Laplacian is taken, (F,) int64"""
+
+
+class Rings(NamedTuple):
+    """The R closed rods, each an open one whose last element is the image of its first."""
+
+    first: Index
+    """Slot of the first node, (R,) int64"""
+    n_elements: Index
+    """Number of elements n without the image, (R,) int64"""
+
+
+class Scene(NamedTuple):
+    """All features of a simulation that are not in its Model."""
+
+    rings: Rings
+    touched: Index
+    """Slots of the rods that point loads and joints act on, (T,) int64"""
+    point_loads: PointLoads
+    dead_loads: DeadLoads
+    waves: Waves
+    wave_span: Index
+    """Slots of the elements that a wave acts on, (W, 2) int64"""
+    flows: Flows
+    drag: Drag
+    joints: Joints
+    rod_contacts: RodContacts
+    body_contacts: BodyContacts
+    planes: Planes
+    plane_span: Index
+    """Slots of the nodes that a plane acts on, (P, 2) int64"""
+    body_planes: Planes
+    grounded: Index
+    """Number of the body that each of ``body_planes`` acts on, (Q,) int64"""
+    ground_friction: Array
+    """Coefficient of Coulomb friction of that pair, (Q,)"""
+    pins: Pins
+    clamps: Clamps
+    decay: Decay
+    filters: Filters
+
+
+class Hooks(NamedTuple):
+    """Addresses of C functions that call the user's own classes, 0 for none."""
+
+    values: int
+    """After each drift: constraints of position and directors"""
+    loads: int
+    """After all built-in loads but the planes"""
+    rates: int
+    """After each kick: constraints of velocities"""
+    damping: int
+    """At the end of a step's kicks: dampers"""
+
+
+class Scheme(NamedTuple):
+    """A symplectic time stepper: drifts and kicks in turn, a drift first and last."""
+
+    drifts: Array
+    """Parts of the time step by which positions move, (S + 1,)"""
+    kicks: Array
+    """Parts of the time step by which velocities change, (S,)"""

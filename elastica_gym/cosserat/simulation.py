@@ -1,0 +1,309 @@
+"""The running simulation behind a finalized simulator: tables, memory, hooks and callbacks."""
+
+import ctypes
+import math
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .assembly import at_rest, build_model, lay_out
+from .kernels.simulate import DENSE, simulate
+from .lowering import SceneBuilder, is_built_in
+from .model import Array
+from .modules.declaration import Declaration
+from .rigidbody.rigid_body import RigidBodyBase
+from .rod.cosserat_rod import MATERIAL, CosseratRod, Lowered
+from .rod.description import Continuum, Rod, stable_time_step
+from .scene import Hooks, Scheme
+
+NEVER = 2**62
+_BYSTANDER = Rod.straight(2, start=(1e6, 0.0, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=1.0,
+                          radius=0.1, density=1.0, youngs_modulus=1.0, shear_modulus=1.0)  # fmt: skip
+INTERVALS = ("every", "step_skip", "sample_every")
+"""Attributes of a callback that say how many steps are from one call to the next"""
+
+Call = Callable[[float], None]
+
+
+class Hook:
+    """A way for compiled code to call Python functions of time, one after another.
+
+    What they raise is kept, and the compiled code told to stop.
+    """
+
+    _signature = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_double)
+
+    def __init__(self) -> None:
+        self.calls: list[Call] = []
+        self.error: BaseException | None = None
+        self._function = self._signature(self._run)
+
+    @property
+    def address(self) -> int:
+        """Address of the C function, 0 if there is nothing to call."""
+        return int(ctypes.cast(self._function, ctypes.c_void_p).value or 0) if self.calls else 0
+
+    def _run(self, time: float) -> int:
+        now = np.float64(time)
+        try:
+            for call in self.calls:
+                call(now)
+        except BaseException as error:
+            self.error = error
+            return 1
+        return 0
+
+
+class Simulation:
+    """All that a finalized simulator runs on.
+
+    Parameters
+    ----------
+    systems : sequence
+        Rods, rigid bodies and surfaces.
+    declared : mapping
+        The features of each kind, as declared.
+
+    Attributes
+    ----------
+    model, scene, state, control
+        What the compiled step reads and writes.
+    """
+
+    def __init__(self, systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]]) -> None:
+        self.rods = [system for system in systems if isinstance(system, CosseratRod)]
+        self.bodies = [system for system in systems if isinstance(system, RigidBodyBase)]
+        # a Model has a rod: bodies alone get one that is far from everything and feels nothing
+        lowered: list[Continuum] = [_laid(rod) for rod in self.rods] or [_BYSTANDER]
+        bodies: Any = [body._lowered() for body in self.bodies]
+        self.model = build_model(lowered, cylinders=bodies)
+        self.state, self.control = at_rest(self.model, lowered, cylinders=bodies)
+        self._material = self._move_rods()
+        self._move_bodies()
+        self._as_laid_out = self._material.copy()
+        self._hooks = {name: Hook() for name in Hooks._fields}
+        self._callbacks: list[tuple[Any, Any, int]] = []
+        self._constraints: list[tuple[Any, Any]] = []
+        self._has_warned = False
+
+        builder = SceneBuilder(self.model, self.rods, self.bodies)
+        self._add_constraints(declared.get("constraints", ()), builder)
+        self._add_loads(declared.get("forcing", ()), builder)
+        self._add_joints(declared.get("connections", ()), builder)
+        self._add_contacts(declared.get("contacts", ()), builder)
+        self._add_dampers(declared.get("damping", ()), builder)
+        for declaration in declared.get("callbacks", ()):
+            callback = declaration.make()
+            self._callbacks.append((callback, declaration.observed, _interval(callback)))
+        self.scene = builder.build()
+        self._loading = DENSE if self._hooks["loads"].calls else builder.loading
+
+    # set up
+
+    def _move_rods(self) -> Array:
+        """Let the rods' attributes be views of the simulation's memory, and return that of their material."""
+        material = np.zeros(sum(rod._fields[name].size for rod in self.rods for name in MATERIAL))
+        used = 0
+        s, c = self.state, self.control
+        for rod, first in zip(self.rods, self.model.first_slot, strict=bool(self.rods)):
+            nodes, elements = slice(first, first + rod.n_nodes), slice(first, first + rod.n_elems)
+            voronoi = slice(first, first + rod.rest_kappa.shape[1])
+            memory = {
+                "position_collection": s.x[0][:, nodes], "velocity_collection": s.v[0][:, nodes],
+                "director_collection": s.Q[0][:, :, elements], "omega_collection": s.w[0][:, elements],
+                "net_forces": s.force[0][:, nodes], "net_torques": s.torque[0][:, elements],
+                "external_forces": c.force[0][:, nodes], "external_torques": c.torque[0][:, elements],
+                "rest_sigma": c.rest_sigma[0][:, elements], "rest_kappa": c.rest_kappa[0][:, voronoi],
+            }  # fmt: skip
+            for name in MATERIAL:
+                values = rod._fields[name]
+                memory[name] = material[used : used + values.size].reshape(values.shape)
+                used += values.size
+            rod._move(memory)
+        return material
+
+    def _move_bodies(self) -> None:
+        """Let the bodies' attributes be views of the simulation's memory."""
+        s = self.state
+        for b, body in enumerate(self.bodies):
+            body._move({
+                "position_collection": s.body_x[0, b, :, None], "velocity_collection": s.body_v[0, b, :, None],
+                "director_collection": s.body_Q[0, b, :, :, None], "omega_collection": s.body_w[0, b, :, None],
+                "external_forces": s.body_force[0, b, :, None], "external_torques": s.body_torque[0, b, :, None],
+            })  # fmt: skip
+
+    def _add_constraints(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+        for declaration in declared:
+            (system,) = declaration.systems
+            constraint = _make_constraint(declaration, system)
+            self._constraints.append((constraint, system))
+            if is_built_in(constraint, "constrain_values", "constrain_rates"):
+                constraint.lower(builder)
+            else:
+                self._hook("values", constraint.constrain_values, system)
+                self._hook("rates", constraint.constrain_rates, system)
+
+    def _add_loads(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+        for declaration in declared:
+            load, (system,) = declaration.make(), declaration.systems
+            if is_built_in(load, "apply_forces", "apply_torques"):
+                load.lower(builder, system)
+            else:
+                self._hook("loads", load.apply_forces, system)
+                self._hook("loads", load.apply_torques, system)
+
+    def _add_joints(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+        for declaration in declared:
+            joint, (one, two), (first, second) = declaration.make(), declaration.systems, declaration.indices
+            if is_built_in(joint, "apply_forces", "apply_torques"):
+                # contact as a joint, as in 0.2.x, has no indices
+                for i, j in zip(np.ravel(first), np.ravel(second), strict=True) if np.size(first) else ((0, 0),):
+                    joint.lower(builder, (one, int(i), two, int(j)))
+            else:
+                self._hook("loads", joint.apply_forces, one, first, two, second)
+                self._hook("loads", joint.apply_torques, one, first, two, second)
+
+    def _add_contacts(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+        for declaration in declared:
+            contact, (one, two) = declaration.make(), declaration.systems
+            contact.require_systems(one, two)
+            if is_built_in(contact, "apply_contact"):
+                contact.lower(builder, one, two)
+            else:
+                self._hook("loads", contact.apply_contact, one, two)
+
+    def _add_dampers(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+        for declaration in declared:
+            (system,) = declaration.systems
+            damper = declaration.make(_system=system)
+            if is_built_in(damper, "dampen_rates"):
+                damper.lower(builder)
+            else:
+                self._hook("damping", damper.dampen_rates, system)
+
+    def _hook(self, point: str, function: Callable, *systems: Any) -> None:
+        """Call a method of a user's class at a point of the step, with the systems and the time."""
+        if _takes_time(function, len(systems)):
+            self._hooks[point].calls.append(lambda time: function(*systems, time))
+        else:
+            self._hooks[point].calls.append(lambda time: function(*systems))
+
+    # run
+
+    def begin(self) -> None:
+        """Apply constraints at time 0 and call back."""
+        self.constrain_values(0.0)
+        self.constrain_rates(0.0)
+        self.call_back(0.0, 0)
+
+    def constrain_values(self, time: float) -> None:
+        """Apply the constraints of positions and directors."""
+        for constraint, system in self._constraints:
+            constraint.constrain_values(system, np.float64(time))
+
+    def constrain_rates(self, time: float) -> None:
+        """Apply the constraints of velocities."""
+        for constraint, system in self._constraints:
+            constraint.constrain_rates(system, np.float64(time))
+
+    def call_back(self, time: float, step: int) -> None:
+        """Call the callbacks that are due after a number of steps."""
+        for callback, observed, interval in self._callbacks:
+            if step % interval == 0:
+                callback.make_callback(observed, np.float64(time), step)
+
+    def close(self) -> None:
+        """Tell callbacks that the simulation is over."""
+        for callback, _, _ in self._callbacks:
+            callback.on_close()
+
+    def steps_to_callback(self, step: int) -> int:
+        """Return how many steps are left from one until a callback is due."""
+        return min((interval - step % interval for _, _, interval in self._callbacks), default=NEVER)
+
+    def advance(self, scheme: Scheme, dt: float, n_steps: int, time: float) -> float:
+        """Take steps from a time on, without callbacks, and return the time after [s]."""
+        self._require_time_step(dt)
+        if not np.array_equal(self._material, self._as_laid_out):
+            for rod, first in zip(self.rods, self.model.first_slot, strict=True):
+                lay_out(self.model._asdict(), _laid(rod), int(first))
+            self._as_laid_out[:] = self._material
+        self.state.time[0] = time
+        hooks = Hooks(**{name: hook.address for name, hook in self._hooks.items()})
+        stopped = simulate(self.model, self.scene, self.state, self.control, hooks, scheme, dt, n_steps,
+                           DENSE if self._has_loads else self._loading)  # fmt: skip
+        if stopped:
+            self._raise_error()
+        return float(self.state.time[0])
+
+    @property
+    def _has_loads(self) -> bool:
+        """Whether any load from outside is set."""
+        arrays = (self.control.force, self.control.torque, self.state.body_force, self.state.body_torque)
+        return any(bool(each.any()) for each in arrays)
+
+    def clear_loads(self) -> None:
+        """Forget the loads from outside."""
+        for each in (self.control.force, self.control.torque, self.state.body_force, self.state.body_torque):
+            each[:] = 0.0
+
+    def _raise_error(self) -> None:
+        for hook in self._hooks.values():
+            error, hook.error = hook.error, None
+            if error is not None:
+                raise error
+
+    def _require_time_step(self, dt: float) -> None:
+        if not (math.isfinite(dt) and dt > 0.0):
+            raise ValueError(f"the time step must be a positive number, not {dt}")
+        if self._has_warned:
+            return
+        self._has_warned = True
+        bound = min((stable_time_step(rod) for rod in self.rods), default=math.inf)
+        if dt > bound:
+            warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the stable one of a rod at rest",
+                          RuntimeWarning, stacklevel=4)  # fmt: skip
+
+
+def _laid(rod: CosseratRod) -> Lowered:
+    """Return a rod as the slots hold it."""
+    return rod._lowered().closed() if rod.ring_rod_flag else rod._lowered()
+
+
+def _make_constraint(declaration: Declaration, system: Any) -> Any:
+    """Make a constraint from what is at its indices now, its own arguments, and the system."""
+    kwargs = dict(declaration.kwargs)
+    indices = {name: kwargs.pop(name, ()) for name in ("constrained_position_idx", "constrained_director_idx")}
+    positions, directors = (np.ravel(index).astype(np.int64) for index in indices.values())
+    for name, index, count in (("constrained_position_idx", positions, system.n_nodes),
+                               ("constrained_director_idx", directors, system.n_elems)):  # fmt: skip
+        if ((index < -count) | (index >= count)).any():
+            raise IndexError(f"{name} must be from {-count} to {count - 1}, not {index.tolist()}")
+    fixed = [system.position_collection[..., i].copy() for i in positions]
+    fixed += [system.director_collection[..., i].copy() for i in directors]
+    more = {"_system": system, **indices} if declaration.cls is None or declaration.accepts("_system") else {}
+    declaration.kwargs = kwargs
+    constraint = declaration.make(*fixed, **more)
+    constraint._set_up(system, *indices.values())
+    return constraint
+
+
+def _interval(callback: Any) -> int:
+    """Return how many steps are from one call of a callback to the next."""
+    for name in INTERVALS:
+        value = getattr(callback, name, None)
+        if isinstance(value, int | np.integer) and not isinstance(value, bool) and value > 0:
+            return int(value)
+    return 1
+
+
+def _takes_time(function: Callable, n_before: int) -> bool:
+    """Return whether a user's method takes a time after the systems: those of 0.2.x joints did not."""
+    import inspect
+
+    parameters = inspect.signature(function).parameters.values()
+    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
+        return True
+    return sum(p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) for p in parameters) > n_before

@@ -1,0 +1,93 @@
+"""Run a simulator to a time."""
+
+import sys
+import time as clock
+from collections.abc import Callable
+from typing import Any
+
+from ..modules.base_system import BaseSystemCollection
+from .symplectic_steppers import SymplecticStepper
+
+ENTRY_TIME = 0.1
+"""How long compiled code runs at a time, so that Ctrl-C is heard and progress seen [s]"""
+
+
+def integrate(
+    stepper: SymplecticStepper, systems: Any, final_time: float, n_steps: int = 1000, restart_time: float = 0.0,
+    progress_bar: bool = True,
+) -> float:  # fmt: skip
+    """Run a simulator for a time, and return the time after [s].
+
+    Compiled code is entered once from each callback to the next, or every tenth of a second.
+
+    Parameters
+    ----------
+    stepper : SymplecticStepper
+        Such as ``PositionVerlet()``.
+    systems : BaseSystemCollection
+        A finalized simulator; or a single rod that is in none.
+    final_time : float
+        How long to run [s]; the time step is ``final_time / n_steps``.
+    n_steps : int
+        Number of steps.
+    restart_time : float
+        Time to start from [s].
+    progress_bar : bool
+        Whether to show progress on standard error.
+    """
+    if not final_time > 0.0:
+        raise ValueError(f"final_time must be a positive number, not {final_time}")
+    if not int(n_steps) > 0:
+        raise ValueError(f"n_steps must be a positive integer, not {n_steps}")
+    n_steps, dt, time = int(n_steps), float(final_time) / int(n_steps), float(restart_time)
+    simulation = _collection(systems).simulation
+    progress = _Progress(n_steps, progress_bar)
+    done, most = 0, 1
+    while done < n_steps:
+        number = round(time / dt)
+        count = min(n_steps - done, simulation.steps_to_callback(number), most)
+        started = clock.perf_counter()
+        time = simulation.advance(stepper.scheme, dt, count, time)
+        most = max(1, int(count * ENTRY_TIME / max(clock.perf_counter() - started, 1e-9)))
+        simulation.call_back(time, round(time / dt))
+        simulation.clear_loads()
+        done += count
+        progress.show(done, time)
+    progress.end()
+    return time
+
+
+def extend_stepper_interface(stepper: SymplecticStepper, systems: Any) -> tuple[Callable, Any]:
+    """Return ``do_step`` and what it takes as ``stages``, for scripts that step by themselves."""
+    return stepper.do_step, stepper.steps_and_prefactors
+
+
+def _collection(systems: Any) -> BaseSystemCollection:
+    if isinstance(systems, BaseSystemCollection):
+        return systems
+    alone = BaseSystemCollection()
+    alone.append(systems)
+    alone.finalize()
+    return alone
+
+
+class _Progress:
+    """A line on standard error that says how far a run is."""
+
+    def __init__(self, total: int, is_on: bool) -> None:
+        self._total, self._is_on = total, is_on
+        self._started = self._shown = clock.perf_counter()
+
+    def show(self, done: int, time: float) -> None:
+        """Say how many steps are done, four times a second and at the end."""
+        now = clock.perf_counter()
+        if self._is_on and (now - self._shown > 0.25 or done == self._total):
+            self._shown = now
+            speed = done / max(now - self._started, 1e-9)
+            print(f"\r{100 * done / self._total:5.1f} %  {done} of {self._total} steps, {speed:,.0f} a second, "
+                  f"time {time:.6g} s ", end="", file=sys.stderr, flush=True)  # fmt: skip
+
+    def end(self) -> None:
+        """End the line."""
+        if self._is_on:
+            print(file=sys.stderr)

@@ -1,0 +1,69 @@
+"""Symplectic time steppers: drifts of positions and kicks of velocities, in turn."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..scene import Scheme
+
+if TYPE_CHECKING:
+    from ..modules.base_system import BaseSystemCollection
+
+
+class SymplecticStepper:
+    """Base class of time steppers.
+
+    Attributes
+    ----------
+    scheme : Scheme
+        The parts of a time step that drifts and kicks take.
+    """
+
+    scheme: Scheme
+
+    @property
+    def n_stages(self) -> int:
+        """Number of drifts in a step."""
+        return int(self.scheme.drifts.size)
+
+    def step(self, systems: "BaseSystemCollection", time: float, dt: float) -> float:
+        """Take one step from a time, call the callbacks that are due, and return the time after [s]."""
+        simulation = systems.simulation
+        after = simulation.advance(self.scheme, float(dt), 1, float(time))
+        simulation.call_back(after, round(after / float(dt)))
+        simulation.clear_loads()
+        return after
+
+    @staticmethod
+    def do_step(
+        stepper: "SymplecticStepper", stages: Any, systems: "BaseSystemCollection", time: float, dt: float
+    ) -> float:
+        """Take one step; ``stages`` is what `extend_stepper_interface` returned."""
+        return stepper.step(systems, time, dt)
+
+    @property
+    def steps_and_prefactors(self) -> Scheme:
+        """The scheme, by the name that scripts pass on to `do_step`."""
+        return self.scheme
+
+
+class PositionVerlet(SymplecticStepper):
+    """Position Verlet, of second order: half a drift, a kick, half a drift."""
+
+    def __init__(self) -> None:
+        self.scheme = Scheme(drifts=np.array([0.5, 0.5]), kicks=np.array([1.0]))
+
+
+class PEFRL(SymplecticStepper):
+    """The position extended Forest-Ruth-like algorithm, of fourth order (Omelyan et al. 2002): four kicks a step."""
+
+    XI = 0.1786178958448091
+    LAMBDA = -0.2123418310626054
+    CHI = -0.06626458266981849
+
+    def __init__(self) -> None:
+        xi, lam, chi = self.XI, self.LAMBDA, self.CHI
+        outer = 0.5 * (1.0 - 2.0 * lam)
+        self.scheme = Scheme(
+            drifts=np.array([xi, chi, 1.0 - 2.0 * (xi + chi), chi, xi]), kicks=np.array([outer, lam, lam, outer])
+        )

@@ -1,0 +1,5 @@
+"""`modules.base_system` by its name in 0.2.x."""
+
+from ..modules.base_system import BaseSystemCollection
+
+__all__ = ["BaseSystemCollection"]

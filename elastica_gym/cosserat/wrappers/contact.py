@@ -1,0 +1,5 @@
+"""`modules.contact` by its name in 0.2.x."""
+
+from ..modules.contact import Contact
+
+__all__ = ["Contact"]

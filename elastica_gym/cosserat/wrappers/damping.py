@@ -1,0 +1,5 @@
+"""`modules.damping` by its name in 0.2.x."""
+
+from ..modules.damping import Damping
+
+__all__ = ["Damping"]

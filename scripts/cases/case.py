@@ -1,0 +1,60 @@
+"""What the cases share: a result with what theory says, and a picture of both."""
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Result:
+    """What was measured, beside what theory says.
+
+    Attributes
+    ----------
+    title, x_label, y_label : str
+        Texts of the picture.
+    x, measured : np.ndarray
+        Points, (n,).
+    exact_x, exact : np.ndarray
+        The curve of theory, (m,).
+    error : float
+        The figure that is compared.
+    bound : float
+        What it must stay below.
+    """
+
+    title: str
+    x_label: str
+    y_label: str
+    x: np.ndarray
+    measured: np.ndarray
+    exact_x: np.ndarray
+    exact: np.ndarray
+    error: float
+    bound: float
+
+
+def show(measure: Callable[[], Result], name: str) -> None:
+    """Run a case from the command line: print its error, and write a picture."""
+    parser = argparse.ArgumentParser(description=measure.__doc__)
+    parser.add_argument("--out", type=Path, default=Path("cases"), help="folder for the picture (default: cases)")
+    arguments = parser.parse_args()
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    result = measure()
+    figure, axes = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
+    axes.plot(result.exact_x, result.exact, color="black", linewidth=1.0, label="theory")
+    axes.plot(result.x, result.measured, "o", markersize=4, label="measured")
+    axes.set(title=result.title, xlabel=result.x_label, ylabel=result.y_label)
+    axes.legend(frameon=False)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    path = arguments.out / f"{name}.png"
+    figure.savefig(path, dpi=150)
+    verdict = "within" if result.error <= result.bound else "ABOVE"
+    print(f"{result.title}: error {result.error:.2e}, {verdict} {result.bound:g}; {path}")

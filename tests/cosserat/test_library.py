@@ -1,0 +1,435 @@
+"""The documented library as its users meet it: simulators, their own classes, callbacks, restarts, errors."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import elastica_gym.cosserat as ea
+
+# a power of two, so that n DT/n is DT for all n
+DT = 2.0**-17
+X, Y, Z = np.eye(3)
+
+
+class Simulator(
+    ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connections, ea.CallBacks, ea.Damping, ea.Contact
+):
+    pass
+
+
+def make_rod(n=12, **options):
+    given = dict(youngs_modulus=1e5, shear_modulus=4e4)
+    return ea.CosseratRod.straight_rod(n, np.zeros(3), Z, Y, 0.3, 0.01, 1000.0, **{**given, **options})
+
+
+def simulator(*rods):
+    sim = Simulator()
+    for rod in rods:
+        sim.append(rod)
+    return sim
+
+
+def integrate(sim, n_steps, start=0.0, stepper=None):
+    return ea.integrate(stepper or ea.PositionVerlet(), sim, n_steps * DT, n_steps, start, progress_bar=False)
+
+
+# the user's own classes
+
+
+class OwnEndpointForces(ea.NoForces):
+    def __init__(self, force):
+        self.force = force
+
+    def apply_forces(self, system, time=0.0):
+        system.external_forces[..., -1] += self.force * min(1.0, time / 1e-3)
+
+
+class EndpointForcesWithTorques(ea.NoForces):
+    """As in the documentation's advanced guide."""
+
+    def __init__(self, end_force, ramp_up_time=0.0):
+        self.end_force, self.ramp_up_time = end_force, ramp_up_time
+
+    def apply_forces(self, system, time=0.0):
+        system.external_forces[..., -1] += self.end_force * min(1.0, time / self.ramp_up_time)
+
+    def apply_torques(self, system, time=0.0):
+        arm = np.array([0.0, 0.0, 0.5 * system.lengths[-1]])
+        force = self.end_force * min(1.0, time / self.ramp_up_time)
+        system.external_torques[..., -1] += np.cross(arm, system.director_collection[..., -1] @ force)
+
+
+class OwnConstraint(ea.ConstraintBase):
+    def __init__(self, fixed_position, fixed_directors, **kwargs):
+        super().__init__(**kwargs)
+        self.position, self.directors = fixed_position, fixed_directors
+
+    def constrain_values(self, rod, time):
+        rod.position_collection[..., 0] = self.position
+        rod.director_collection[..., 0] = self.directors
+
+    def constrain_rates(self, rod, time):
+        rod.velocity_collection[..., 0] = 0.0
+        rod.omega_collection[..., 0] = 0.0
+
+
+class OwnDamper(ea.DamperBase):
+    def dampen_rates(self, system, time):
+        system.velocity_collection *= np.exp(-4.0 * DT)
+        system.omega_collection *= np.exp(-4.0 * DT)
+
+
+class OwnJoint(ea.FreeJoint):
+    """Before 1.0 joints were not told the time."""
+
+    def apply_forces(self, system_one, index_one, system_two, index_two):
+        super().apply_forces(system_one, index_one, system_two, index_two)
+
+    def apply_torques(self, system_one, index_one, system_two, index_two):
+        pass
+
+
+class OwnContact(ea.NoContact):
+    def apply_contact(self, system_one, system_two):
+        system_one.external_forces[..., 0] += 0.01 * X
+        system_two.external_forces[..., 0] -= 0.01 * X
+
+
+def by_either(built_in, own):
+    """Return final positions of a rod with a built-in feature, and with the user's own that does the same."""
+    found = []
+    for declare in (built_in, own):
+        rods = make_rod(), make_rod()
+        sim = simulator(*rods)
+        declare(sim, *rods)
+        sim.finalize()
+        rods[0].velocity_collection[0] = np.linspace(0.0, 0.1, 13)
+        integrate(sim, 400)
+        found.append(np.stack([rod.position_collection for rod in rods]))
+    return found
+
+
+CLAMP = dict(constrained_position_idx=(0,), constrained_director_idx=(0,))
+PAIRS = {
+    "load": (lambda s, a, b: s.add_forcing_to(a).using(ea.EndpointForces, np.zeros(3), 0.01 * X, ramp_up_time=1e-3),
+             lambda s, a, b: s.add_forcing_to(a).using(OwnEndpointForces, 0.01 * X)),
+    "constraint": (lambda s, a, b: s.constrain(a).using(ea.OneEndFixedBC, **CLAMP),
+                   lambda s, a, b: s.constrain(a).using(OwnConstraint, **CLAMP)),
+    "damper": (lambda s, a, b: s.dampen(a).using(ea.AnalyticalLinearDamper, uniform_damping_constant=4.0),
+               lambda s, a, b: s.dampen(a).using(OwnDamper)),
+    "joint": (lambda s, a, b: s.connect(a, b, -1, 0).using(ea.FreeJoint, k=10.0, nu=0.1),
+              lambda s, a, b: s.connect(a, b, -1, 0).using(OwnJoint, k=10.0, nu=0.1)),
+    "contact": (lambda s, a, b: (s.add_forcing_to(a).using(ea.EndpointForces, 0.01 * X, np.zeros(3)),
+                                 s.add_forcing_to(b).using(ea.EndpointForces, -0.01 * X, np.zeros(3))),
+                lambda s, a, b: s.detect_contact_between(a, b).using(OwnContact)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("built_in", "own"), PAIRS.values(), ids=PAIRS.keys())
+def test_own_class_does_what_the_built_in_one_does(built_in, own):
+    expected, found = by_either(built_in, own)
+    assert np.abs(expected - found).max() < 1e-14
+
+
+# what a subclass that overrides nothing calls, written in Python, must do what the compiled rows do
+
+PYTHON = {
+    ea.GravityForces: ("add_forcing_to", (np.array([0.1, -9.8, 2.0]),), {}, ("apply_forces", "apply_torques")),
+    ea.EndpointForces: ("add_forcing_to", (0.01 * X, 0.02 * Y, 2e-3), {}, ("apply_forces", "apply_torques")),
+    ea.EndpointForcesSinusoidal: ("add_forcing_to", (0.01, 0.02, 2e-3), {}, ("apply_forces", "apply_torques")),
+    ea.UniformForces: ("add_forcing_to", (0.05, Y), {}, ("apply_forces", "apply_torques")),
+    ea.UniformTorques: ("add_forcing_to", (1e-3, X), {}, ("apply_forces", "apply_torques")),
+    ea.SlenderBodyTheory: ("add_forcing_to", (0.3,), {}, ("apply_forces", "apply_torques")),
+    ea.FixedConstraint: ("constrain", (), CLAMP, ("constrain_values", "constrain_rates")),
+    ea.GeneralConstraint: ("constrain", (), dict(**CLAMP, rotational_constraint_selector=np.array([True, False, True])),
+                           ("constrain_values", "constrain_rates")),
+    ea.LaplaceDissipationFilter: ("dampen", (3,), {}, ("dampen_rates",)),
+    ea.AnalyticalLinearDamper: ("dampen", (), dict(damping_constant=0.1, time_step=DT), ("dampen_rates",)),
+}  # fmt: skip
+
+
+def through_super(cls, name):
+    """Return a method that overrides and does the same."""
+    return lambda self, *arguments: getattr(cls, name)(self, *arguments)
+
+
+@pytest.mark.parametrize("cls", PYTHON, ids=lambda cls: cls.__name__)
+def test_subclass_that_calls_super(cls):
+    declare, args, kwargs, methods = PYTHON[cls]
+    own = type("Own", (cls,), {name: through_super(cls, name) for name in methods})
+    expected, found = by_either(lambda s, a, b: getattr(s, declare)(a).using(cls, *args, **kwargs),
+                                lambda s, a, b: getattr(s, declare)(a).using(own, *args, **kwargs))  # fmt: skip
+    assert np.abs(expected - found).max() < 1e-13
+
+
+def test_torques_of_the_advanced_guide():
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.constrain(rod).using(ea.OneEndFixedBC, **CLAMP)
+    sim.add_forcing_to(rod).using(EndpointForcesWithTorques, 0.01 * X)
+    sim.finalize()
+    with np.errstate(divide="ignore"):
+        integrate(sim, 300)
+    assert rod.position_collection[0, -1] > 1e-6
+
+
+class Failing(ea.NoForces):
+    def apply_forces(self, system, time=0.0):
+        if time > 50 * DT:
+            raise FloatingPointError("the user's own error")
+
+
+def test_error_in_own_class_reaches_the_caller():
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.add_forcing_to(rod).using(Failing)
+    sim.finalize()
+    with pytest.raises(FloatingPointError, match="the user's own error"):
+        integrate(sim, 100)
+
+
+def test_force_from_outside_acts_once():
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.finalize()
+    stepper, time = ea.PositionVerlet(), 0.0
+    rod.external_forces[1, 4] = 2.0
+    time = stepper.step(sim, time, DT)
+    assert np.isclose(rod.velocity_collection[1, 4], DT * 2.0 / rod.mass[4])
+    assert not rod.external_forces.any()
+    momentum = (rod.mass * rod.velocity_collection).sum(axis=1)
+    stepper.step(sim, time, DT)
+    assert np.allclose((rod.mass * rod.velocity_collection).sum(axis=1), momentum, atol=1e-18)
+
+
+# callbacks
+
+
+class Record(ea.CallBackBaseClass):
+    def __init__(self, every=None):
+        self.seen = []
+        if every is not None:
+            self.every = every
+
+    def make_callback(self, system, time, current_step):
+        self.seen.append((current_step, time, system))
+
+
+@pytest.mark.parametrize(("every", "steps"), [(None, list(range(8))), (3, [0, 3, 6])])
+def test_callback_interval(every, steps):
+    records = []
+
+    class Kept(Record):
+        def __init__(self):
+            super().__init__(every)
+            records.append(self)
+
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.collect_diagnostics(rod).using(Kept)
+    sim.collect_diagnostics(...).using(Kept)
+    sim.collect_diagnostics({"a": rod}).using(Kept)
+    sim.finalize()
+    integrate(sim, 7)
+    assert [step for step, _, _ in records[0].seen] == steps
+    assert np.allclose([time for _, time, _ in records[0].seen], DT * np.array(steps))
+    assert [record.seen[0][2] for record in records] == [rod, (rod,), {"a": rod}]
+
+
+def test_export(tmp_path):
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.collect_diagnostics(rod).using(
+        ea.ExportCallBack, step_skip=10, filename="rod", directory=str(tmp_path), method="npz", file_save_interval=50
+    )
+    sim.collect_diagnostics(rod).using(ea.ExportCallBack, 10, str(tmp_path / "seed"), "pickle", save_every=1e8)
+    sim.finalize()
+    integrate(sim, 120)
+    sim.close()
+    files = sorted(path.name for path in tmp_path.iterdir())
+    assert files == ["rod_00.npz", "rod_01.npz", "rod_02.npz", "seed_00.pkl"]
+    steps = np.concatenate([np.load(tmp_path / name)["step"] for name in files[:3]])
+    assert steps.tolist() == list(range(0, 121, 10))
+    assert np.load(tmp_path / "rod_00.npz")["position"].shape[1:] == (3, 13)
+    assert pickle.loads((tmp_path / "seed_00.pkl").read_bytes())["step"].size == 13
+
+
+# restarts, and runs cut in pieces
+
+
+def moving():
+    rods = make_rod(nu=0.01), make_rod()
+    sim = simulator(*rods)
+    sim.constrain(rods[0]).using(ea.OneEndFixedBC, **CLAMP)
+    sim.connect(rods[0], rods[1], -1, 0).using(ea.FixedJoint, k=10.0, nu=0.1, kt=0.01)
+    sim.add_forcing_to(rods[1]).using(ea.GravityForces)
+    sim.dampen(rods[1]).using(ea.LaplaceDissipationFilter, 3)
+    sim.finalize()
+    return sim, rods
+
+
+@pytest.mark.parametrize("stepper", [ea.PositionVerlet(), ea.PEFRL()], ids=["verlet", "pefrl"])
+def test_the_same_bits_wherever_a_run_is_cut_or_restarted(stepper, tmp_path):
+    sim, rods = moving()
+    integrate(sim, 1500, stepper=stepper)
+    whole = [rod.position_collection.copy() for rod in rods]
+
+    sim, rods = moving()
+    time = integrate(sim, 700, stepper=stepper)
+    ea.save_state(sim, tmp_path / "saved", time)
+    sim, rods = moving()
+    time = ea.load_state(sim, tmp_path / "saved")
+    for part in (1, 99, 700):
+        time = ea.integrate(stepper, sim, part * DT, part, time, progress_bar=False)
+    for rod, expected in zip(rods, whole, strict=True):
+        assert np.array_equal(rod.position_collection, expected)
+
+
+def test_script_that_steps_by_itself():
+    sim, rods = moving()
+    integrate(sim, 50)
+    expected = rods[1].position_collection.copy()
+    sim, rods = moving()
+    stepper = ea.PositionVerlet()
+    do_step, stages = ea.extend_stepper_interface(stepper, sim)
+    time = 0.0
+    for _ in range(50):
+        time = do_step(stepper, stages, sim, time, DT)
+    assert np.array_equal(rods[1].position_collection, expected)
+
+
+def test_order_of_the_steppers():
+    """Halving the step divides the error by 4 in position Verlet and by 16 in PEFRL.
+
+    A rod that only stretches: the torques that depend on angular velocity spoil the order.
+    """
+
+    def end(stepper, n_steps):
+        rod = make_rod(4)
+        sim = simulator(rod)
+        sim.constrain(rod).using(ea.OneEndFixedBC, **CLAMP)
+        sim.add_forcing_to(rod).using(ea.EndpointForces, np.zeros(3), 0.3 * Z)
+        sim.finalize()
+        ea.integrate(stepper, sim, 0.02, n_steps, progress_bar=False)
+        return rod.position_collection.copy()
+
+    exact = end(ea.PEFRL(), 4000)
+    for stepper, order in ((ea.PositionVerlet(), 2), (ea.PEFRL(), 4)):
+        errors = [np.abs(end(stepper, n) - exact).max() for n in (100, 200)]
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.3)
+
+
+# attributes
+
+
+def test_attributes_own_before_and_view_after():
+    rod = make_rod()
+    rod.shear_matrix = 2.0 * rod.shear_matrix
+    rod.bend_matrix[2, 2, :] = 0.5
+    sim = simulator(rod)
+    sim.finalize()
+    model, first = sim.simulation.model, sim.simulation.model.first_slot[0]
+    assert np.allclose(model.bend[2, first : first + 11], 0.5)
+    assert np.shares_memory(rod.position_collection, sim.simulation.state.x)
+    rod.velocity_collection = np.ones((3, 13))
+    assert (sim.simulation.state.v[0][:, first : first + 13] == 1.0).all()
+    # material written later is read when compiled code is next entered
+    rod.mass[:] = 7.0
+    integrate(sim, 1)
+    assert (model.mass[first : first + 13] == 7.0).all()
+    assert np.allclose(model.inv_mass[first : first + 13], 1.0 / 7.0)
+
+
+def test_attributes_refuse():
+    rod = make_rod()
+    with pytest.raises(ValueError, match=r"mass must have shape \(13,\)"):
+        rod.mass = np.ones(5)
+    with pytest.raises(ValueError, match="read-only"):
+        rod.kappa[0] = 1.0
+    rod.shear_matrix[0, 1, 0] = 1.0
+    with pytest.raises(ValueError, match="shear_matrix must be diagonal"):
+        simulator(rod).finalize()
+
+
+def test_actuation_by_rest_curvature_during_a_run():
+    rod = make_rod(nu=0.5)
+    sim = simulator(rod)
+    sim.finalize()
+    integrate(sim, 100)
+    rod.rest_kappa[0] = 3.0
+    integrate(sim, 5000)
+    assert rod.kappa[0].mean() > 0.03
+
+
+def test_pickle():
+    _, rods = moving()
+    again = pickle.loads(pickle.dumps(rods[0]))
+    assert np.array_equal(again.position_collection, rods[0].position_collection)
+
+
+@pytest.mark.parametrize(("options", "ratio"), [
+    (dict(), 3.0), (dict(nu=0.1), 1.5), (dict(poisson_ratio=0.25), 1.25), (dict(nu=0.1, shear_modulus=2.5e4), 4.0),
+])  # fmt: skip
+def test_shear_modulus(options, ratio):
+    rod = make_rod(**{"shear_modulus": None, **options})
+    assert rod.bend_matrix[0, 0, 0] / rod.bend_matrix[2, 2, 0] == pytest.approx(0.5 * ratio)
+
+
+# errors
+
+
+def refuses(action, *words, error=Exception):
+    with pytest.raises(error) as caught:
+        action()
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_errors_of_simulators():
+    rod = make_rod()
+    refuses(lambda: Simulator().finalize(), "append a rod", error=RuntimeError)
+    refuses(lambda: simulator(rod, rod), "already", error=ValueError)
+    refuses(lambda: simulator("rod"), "not str", error=TypeError)
+    refuses(lambda: Simulator().constrain(rod), "append it first", error=ValueError)
+    refuses(lambda: ea.BaseSystemCollection().constrain(rod), "Constraints", error=AttributeError)
+    sim = simulator(rod)
+    sim.constrain(rod)
+    refuses(sim.finalize, "constraint", "did you forget .using", error=RuntimeError)
+    refuses(lambda: integrate(simulator(rod), 10), "finalize()", error=RuntimeError)
+
+
+def test_errors_of_using():
+    rod = make_rod()
+    sim = simulator(rod)
+    refuses(lambda: simulator(rod).constrain(rod).using(ea.GravityForces), "ConstraintBase", error=TypeError)
+    declared = sim.add_forcing_to(rod)
+    declared.using(ea.GravityForces)
+    refuses(lambda: declared.using(ea.GravityForces), "already", error=RuntimeError)
+    sim.add_forcing_to(rod).using(ea.EndpointForces)
+    refuses(sim.finalize, "EndpointForces", "start_force", error=TypeError)
+    refuses(lambda: sim.connect(rod, rod, -1, 99), "second_connect_idx", "99", error=IndexError)
+
+
+def test_nothing_is_added_after_finalize():
+    sim, rods = moving()
+    for action in (sim.finalize, lambda: sim.append(make_rod()), lambda: sim.add_forcing_to(rods[0])):
+        refuses(action, "finalized", error=RuntimeError)
+
+
+def test_unstable_time_step_is_warned_of():
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.finalize()
+    bound = ea.stable_time_step(rod)
+    with pytest.warns(RuntimeWarning, match="stable"):
+        ea.integrate(ea.PositionVerlet(), sim, 2.0 * bound, 1, progress_bar=False)
+
+
+@pytest.mark.parametrize("name", ["FreeRod", "OneEndFixedRod"])
+def test_deprecated_names_warn(name):
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.constrain(rod).using(getattr(ea, name), **(CLAMP if name == "OneEndFixedRod" else {}))
+    with pytest.warns(DeprecationWarning, match=name):
+        sim.finalize()

@@ -1,0 +1,126 @@
+"""Contact in the documented library: it parts what overlaps, and changes neither momentum nor angular momentum."""
+
+import numpy as np
+import pytest
+
+import elastica_gym.cosserat as ea
+
+DT = 2.0**-16
+X, Y, Z = np.eye(3)
+
+
+class Simulator(ea.BaseSystemCollection, ea.Forcing, ea.Connections, ea.Contact):
+    pass
+
+
+def make_rod(start, direction=Z, normal=Y, n=10):
+    return ea.CosseratRod.straight_rod(
+        n, np.array(start), np.array(direction), np.array(normal), 0.2, 0.01, 1000.0, youngs_modulus=1e6,
+        shear_modulus=4e5,
+    )  # fmt: skip
+
+
+def make_cylinder():
+    return ea.Cylinder(np.array([-0.1, 0.035, 0.1]), X, Z, 0.2, 0.03, 500.0)
+
+
+def run(sim, n_steps):
+    sim.finalize()
+    ea.integrate(ea.PositionVerlet(), sim, n_steps * DT, n_steps, progress_bar=False)
+
+
+def momenta(*systems):
+    """Return momentum and angular momentum about the origin of all systems, (6,)."""
+    total = np.zeros(6)
+    for system in systems:
+        p = np.atleast_1d(system.mass) * system.velocity_collection
+        spin = np.einsum("ijk,jk->ik", system.mass_second_moment_of_inertia, system.omega_collection)
+        if isinstance(system, ea.CosseratRod):
+            spin = spin / system.dilatation
+        total[:3] += p.sum(axis=1)
+        total[3:] += np.cross(system.position_collection, p, axis=0).sum(axis=1)
+        total[3:] += np.einsum("jik,jk->i", system.director_collection, spin)
+    return total
+
+
+# each with one thing moving towards the other
+CONTACTS = {
+    "rod on rod": (lambda: make_rod((-0.1, 0.018, 0.1), X, Z), ea.RodRodContact, {}),
+    "rod on cylinder": (make_cylinder, ea.RodCylinderContact, {}),
+    "rod on cylinder, rubbing": (make_cylinder, ea.RodCylinderContact,
+                                 dict(velocity_damping_coefficient=10.0, friction_coefficient=0.5)),
+    "rod on sphere": (lambda: ea.Sphere(np.array([0.0, 0.038, 0.1]), 0.03, 500.0), ea.RodSphereContact, {}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("is_joint", [False, True], ids=["contact", "as in 0.2.x"])
+@pytest.mark.parametrize(("make", "cls", "options"), CONTACTS.values(), ids=CONTACTS.keys())
+def test_parts_what_overlaps(make, cls, options, is_joint):
+    rod, other, sim = make_rod((0.0, 0.0, 0.0)), make(), Simulator()
+    sim.append(rod)
+    sim.append(other)
+    if is_joint:
+        sim.connect(rod, other).using(ea.ExternalContact, k=1e3, nu=0.1, **options)
+    else:
+        sim.detect_contact_between(rod, other).using(cls, k=1e3, nu=0.1, **options)
+    sim.finalize()
+    rod.velocity_collection[:] = np.array([[0.05], [0.1], [0.0]])
+    before, way = momenta(rod, other), other.position_collection[1].mean()
+    ea.integrate(ea.PositionVerlet(), sim, 1000 * DT, 1000, progress_bar=False)
+    assert other.position_collection[1].mean() > way + 1e-5
+    assert np.allclose(momenta(rod, other)[:3], before[:3], atol=1e-14)
+    assert np.allclose(momenta(rod, other)[3:], before[3:], atol=1e-7)
+
+
+def test_only_declared_pairs_touch():
+    rods = [make_rod((0.0, 0.0, 0.0)), make_rod((-0.1, 0.018, 0.1), X, Z), make_rod((-0.1, -0.018, 0.1), X, Z)]
+    sim = Simulator()
+    for rod in rods:
+        sim.append(rod)
+    sim.detect_contact_between(rods[0], rods[1]).using(ea.RodRodContact, k=1e3, nu=0.0)
+    run(sim, 50)
+    assert rods[1].velocity_collection.any()
+    assert not rods[2].velocity_collection.any()
+
+
+def test_rod_touches_itself():
+    """A hairpin whose arms overlap opens; without contact it stays."""
+    angle = np.linspace(0.0, np.pi, 15)
+    arms = np.linspace(0.0, 0.1, 12)[1:]
+    y = np.concatenate([np.full(11, 0.009), 0.009 * np.cos(angle), np.full(11, -0.009)])
+    z = np.concatenate([-arms[::-1], 0.009 * np.sin(angle), -arms])
+    nodes = np.array([np.zeros(y.size), y, z])
+    found = []
+    for touches in (False, True):
+        rod = ea.CosseratRod.straight_rod(
+            y.size - 1, nodes[:, 0], Z, X, 0.3, 0.01, 1000.0, youngs_modulus=1e3, shear_modulus=4e2, position=nodes
+        )
+        rod.rest_kappa[:] = rod.kappa
+        sim = Simulator()
+        sim.append(rod)
+        if touches:
+            sim.detect_contact_between(rod, rod).using(ea.RodSelfContact, k=10.0, nu=0.0)
+        run(sim, 100)
+        found.append(rod.velocity_collection[1, 0])
+    assert abs(found[0]) < 1e-9 < 1e-4 < found[1]
+
+
+def test_cylinder_rests_on_a_plane():
+    body, plane, sim = ea.Cylinder(np.zeros(3), Y, X, 0.1, 0.05, 500.0), ea.Plane(np.zeros(3), Y), Simulator()
+    sim.append(body)
+    sim.append(plane)
+    sim.add_forcing_to(body).using(ea.GravityForces)
+    sim.detect_contact_between(body, plane).using(ea.CylinderPlaneContact, k=1e4, nu=20.0, friction_coefficient=0.5)
+    run(sim, 30_000)
+    # three points of contact carry it
+    depth = body.mass * 9.80665 / (3 * 1e4)
+    assert body.position_collection[1, 0] == pytest.approx(0.05 - depth, abs=1e-7)
+
+
+def test_errors():
+    rod, body, plane, sim = make_rod((0.0, 0.0, 0.0)), make_cylinder(), ea.Plane(np.zeros(3), Y), Simulator()
+    for system in (rod, body, plane):
+        sim.append(system)
+    sim.detect_contact_between(rod, plane).using(ea.RodCylinderContact, k=1.0, nu=0.0)
+    with pytest.raises(TypeError, match="must be a Cylinder, not a Plane"):
+        sim.finalize()
