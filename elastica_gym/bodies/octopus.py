@@ -94,8 +94,9 @@ def octopus() -> Body:
     """Return the octopus on the plane y = 0, with its object 0.4 m before its head.
 
     Full activation of one direction of bending curls a free arm by 427 degrees, and an arm that has the object in
-    its bend holds it, wrapped by more than 200 degrees (`tests/bodies/test_octopus.py`). What sticks creeps by the force over ``SKIN``'s slip
-    damping and the number of elements in contact: some centimetres a second for an object that is dragged.
+    its bend holds it, wrapped by more than 200 degrees (`tests/bodies/test_octopus.py`). What sticks creeps by the
+    force over ``SKIN``'s slip damping and the number of elements in contact: some centimetres a second for an object
+    that is dragged.
     """
     limp = Rod.through(
         nodes(), normal=(0.0, 1.0, 0.0), radius=radii(), density=DENSITY, youngs_modulus=YOUNGS_MODULUS,
