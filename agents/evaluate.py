@@ -41,7 +41,7 @@ class Evaluation:
     successes: np.ndarray
     """Whether the task was solved, shape (n,), bool."""
     reasons: np.ndarray
-    """Why each episode ended: success, diverged or time_limit, shape (n,)."""
+    """Why each episode ended, shape (n,): success, diverged, time_limit or a failure of the task."""
     terms: dict[str, np.ndarray]
     """Sum over the episode of each weighted reward term, shape (n,) each."""
 
@@ -185,6 +185,8 @@ class EvaluateArguments:
     """Instead of a run: zero, random, scripted or seed_gait."""
     env: str | None = None
     """Environment id; by default the one that the run was trained on."""
+    spread: str | None = None
+    """How starts are drawn, for tasks that know several: of OctopusReach arc or anywhere."""
     episodes: int = 50
     """How many episodes."""
     seed: int = 1
@@ -204,6 +206,8 @@ def main() -> None:
 
     arguments = tyro.cli(EvaluateArguments)
     policy, env_id, env_kwargs = _policy_and_environment(arguments)
+    if arguments.spread is not None:
+        env_kwargs = {**env_kwargs, "spread": choose("spread", arguments.spread, spreads(env_id))}
     if arguments.record is not None:
         make_folder(arguments.record)
     result = evaluate(
@@ -235,11 +239,20 @@ def _policy_and_environment(arguments: EvaluateArguments) -> "tuple[Policy, str,
     if arguments.policy is not None:
         if arguments.env is None:
             raise BadInputError(f"--policy needs --env, one of {', '.join(environment_ids())}.")
+        if arguments.policy == "seed_gait" and "Snake" not in arguments.env:
+            raise BadInputError(f"seed_gait is the snake's published gait; {arguments.env} is not a snake's.")
         return baseline(arguments.policy), arguments.env, {}
     assert arguments.run is not None
     policy, config = load_run(arguments.run)
     env_kwargs = config["hyperparameters"].get("env_kwargs") or {}
     return policy, arguments.env or choose("environment", config["env"], environment_ids()), env_kwargs
+
+
+def spreads(env_id: str) -> tuple[str, ...]:
+    """Return the ways in which an environment can draw its starts."""
+    from elastica_gym.envs import TASKS
+
+    return tuple(TASKS[env_id.rpartition("/")[2].removesuffix("-v0")].starts)
 
 
 def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs: dict[str, Any]) -> Path | None:
