@@ -12,7 +12,7 @@ from ..cosserat.kernels.contact import overlap
 from ..cosserat.kernels.vectors import column, plus, times, to_lab, vector
 from ..cosserat.model import Array, Index
 from ..cosserat.surroundings import Cylinder
-from ..muscles import Muscles
+from ..muscles import N_ACTIVATIONS, Muscles, couple_matrix
 
 
 class Senses(NamedTuple):
@@ -105,6 +105,14 @@ class Body:
             layout += [(f"object/{b}/spin/{axis}", -50.0, 50.0) for axis in axes]
             layout += [(f"object/{b}/gap", -1.0, 4.0)]
         return layout
+
+
+def couples_of(muscles: Muscles, rod: Rod, model: Model) -> Array:
+    """Return the couple in the slots of a model, whose first rod it is, by activation [N m], (42, 3, L)."""
+    start = int(model.first_slot[0])
+    couples = np.zeros((N_ACTIVATIONS, 3, model.mass.size))
+    couples[:, :, start : start + rod.n_elements - 1] = couple_matrix(muscles, rod)
+    return couples
 
 
 class Pose(NamedTuple):

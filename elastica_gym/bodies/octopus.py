@@ -17,8 +17,8 @@ import numpy as np
 from ..cosserat import Rod, build_model
 from ..cosserat.model import Array
 from ..cosserat.surroundings import Contact, Cylinder, Plane
-from ..muscles import N_ACTIVATIONS, OCTOPUS, couple_matrix
-from .body import Body, Senses
+from ..muscles import OCTOPUS
+from .body import Body, Senses, couples_of
 
 N_ELEMENTS = 120
 HEAD = (50, 70)
@@ -117,11 +117,10 @@ def octopus() -> Body:
         activation_time=OCTOPUS.activation_time, is_balanced=True,
     )  # fmt: skip
     start = int(model.first_slot[0])
-    couples = np.zeros((N_ACTIVATIONS, 3, model.mass.size))
-    couples[:, :, start : start + N_ELEMENTS - 1] = couple_matrix(OCTOPUS, rod)
     return Body(
         name="octopus", rods=(rod,), cylinders=(thing,), model=model, muscles=OCTOPUS, arms=("first", "second"),
-        couples=couples, senses=_senses(start, float(rod.nodal_mass.sum() * GRAVITY)), sim_dt=SIM_DT, settling=1.0,
+        couples=couples_of(OCTOPUS, rod, model), sim_dt=SIM_DT,
+        settling=1.0, senses=_senses(start, float(rod.nodal_mass.sum() * GRAVITY)),
     )  # fmt: skip
 
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from ..cosserat import Rod, build_model, stable_time_step
 from ..cosserat.surroundings import Plane
-from ..muscles import N_ACTIVATIONS, SNAKE, couple_matrix
-from .body import Body, Senses
+from ..muscles import SNAKE
+from .body import Body, Senses, couples_of
 
 LENGTH = 0.35
 RADIUS = 0.011 * LENGTH
@@ -64,11 +64,9 @@ def snake(n_elements: int = 50) -> Body:
         [rod], planes=[ground], gravity=(0.0, -GRAVITY, 0.0), activation_time=SNAKE.activation_time, is_balanced=True
     )
     start = int(model.first_slot[0])
-    couples = np.zeros((N_ACTIVATIONS, 3, model.mass.size))
-    couples[:, :, start : start + n_elements - 1] = couple_matrix(SNAKE, rod)
     return Body(
-        name="snake", rods=(rod,), model=model, muscles=SNAKE, arms=("front", "rear"), couples=couples,
-        senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
+        name="snake", rods=(rod,), model=model, muscles=SNAKE, arms=("front", "rear"),
+        couples=couples_of(SNAKE, rod, model), senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
         sim_dt=min(SIM_DT, 0.94 * stable_time_step(rod)),
     )  # fmt: skip
 

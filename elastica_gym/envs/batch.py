@@ -23,7 +23,9 @@ from ..muscles import N_ACTIVATIONS, activation_names
 from .task import Mask, Situation, Task
 
 CONTROL_DT = 0.05
+"""Duration of a control step unless another is asked for [s]"""
 CLOCK_PERIOD = 1.0
+"""Period of the clock that animals feel [s]"""
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
                   "body_x", "body_v", "body_Q", "body_w", "body_contact", "body_touch", "rod_touch")  # fmt: skip

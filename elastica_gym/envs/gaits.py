@@ -82,6 +82,7 @@ OCTOPUS_STROKES = {
 the first three functions about the normal and about the binormal. The means of 240 trials each of CMA-ES on the way
 made in 6 s without toppling, to the left with periods from 0.8 s"""
 OCTOPUS_FUNCTIONS = (0, 1, 2, 14, 15, 16)
+"""The first arm's activations that a stroke plays"""
 
 
 def octopus_crawl(env: "BatchEnv", angle: Array) -> Array:

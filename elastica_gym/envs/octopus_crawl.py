@@ -90,7 +90,7 @@ from ..bodies import octopus
 from ..cosserat.model import Array
 from .gaits import octopus_crawl
 from .starts import with_object_anywhere
-from .task import Mask, Situation, Task, effort, has_toppled, in_heading_frame, toppled, way_to_goal
+from .task import Mask, Situation, Task, effort, has_toppled, in_heading_frame, no_target, toppled, way_to_goal
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -131,10 +131,6 @@ def forward(situation: Situation) -> Array:
 def succeeds(situation: Situation) -> Mask:
     """Return whether the animal has come half a body length, (B,) bool."""
     return distance(situation) >= FAR * situation.body.senses.length
-
-
-def no_target(goal: Array) -> None:
-    """Return None: there is a direction, but no place to show."""
 
 
 def scripted_policy(env: "BatchEnv") -> Array:

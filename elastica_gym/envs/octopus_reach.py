@@ -93,7 +93,7 @@ from ..bodies import octopus
 from ..cosserat.model import Array
 from .gaits import octopus_reach
 from .starts import with_object_anywhere, with_object_on_the_arc
-from .task import Mask, Situation, Task, effort, has_toppled, in_heading_frame, toppled, way_to_goal
+from .task import Mask, Situation, Task, effort, has_toppled, in_heading_frame, no_target, toppled, way_to_goal
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -138,10 +138,6 @@ def early(situation: Situation) -> Array:
 def distance(situation: Situation) -> Array:
     """Return by how much the gap has shrunk since reset [m], (B,)."""
     return situation.goal[:, 2] - situation.pose.gaps[:, 0]
-
-
-def no_target(goal: Array) -> None:
-    """Return None: the object shows where to go."""
 
 
 def scripted_policy(env: "BatchEnv") -> Array:

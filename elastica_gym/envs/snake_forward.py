@@ -79,7 +79,7 @@ from ..bodies import snake
 from ..cosserat.model import Array
 from .gaits import snake_crawl
 from .starts import draw_start
-from .task import Mask, Situation, Task, effort, in_heading_frame
+from .task import Mask, Situation, Task, effort, in_heading_frame, no_target
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -123,10 +123,6 @@ def heading(situation: Situation) -> Array:
 def succeeds(situation: Situation) -> Mask:
     """Return whether the animal has come a body length, (B,) bool."""
     return distance(situation) >= situation.body.senses.length
-
-
-def no_target(goal: Array) -> None:
-    """Return None: there is a direction, but no place to show."""
 
 
 def direction_of_goal(situation: Situation) -> Array:

@@ -105,6 +105,10 @@ def way_to_goal(situation: Situation) -> tuple[Array, Array]:
     return in_heading_frame(s, x, z)
 
 
+def no_target(goal: Array) -> None:
+    """Return None: there is no place to show, but a direction or an object."""
+
+
 def has_toppled(situation: Situation) -> Mask:
     """Return whether the animal has rolled or pitched by more than 60 degrees, (B,) bool."""
     return situation.pose.upright < 0.5

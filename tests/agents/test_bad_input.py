@@ -56,6 +56,18 @@ def test_values_that_cannot_be(option, message, tmp_path):
     assert not list(folder.glob("*"))  # the same folder can be used again
 
 
+def test_unknown_spread():
+    octopus = "--policy", "zero", "--env", "elastica_gym/OctopusReach-v0"
+    assert "'everywhere'; did you mean 'anywhere'? Valid: anywhere, arc." in refused(
+        "agents.evaluate", *octopus, "--spread", "everywhere"
+    )
+
+
+def test_the_snakes_gait_is_not_the_octopuss():
+    message = refused("agents.evaluate", "--policy", "seed_gait", "--env", "elastica_gym/OctopusCrawl-v0")
+    assert "seed_gait is the snake's published gait" in message
+
+
 def test_unknown_policy():
     assert "'scriptd'; did you mean 'scripted'" in refused("agents.evaluate", "--policy", "scriptd", "--env", FORWARD)
     assert "either --run DIR or --policy" in refused("agents.evaluate", "--env", FORWARD)

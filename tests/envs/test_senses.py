@@ -78,3 +78,58 @@ def test_a_bend_to_the_right_turns_to_the_right(make_vec, sign):
 def test_too_few_elements_are_refused():
     with pytest.raises(ValueError, match="n_elements must be at least 16, not 3"):
         gymnasium.make_vec(FORWARD, num_envs=1, body_kwargs={"n_elements": 3})
+
+
+REACH = "elastica_gym/OctopusReach-v0"
+
+
+def in_the_heads_frame(env, i, vector):
+    """Return the forward, up and right component of a vector in the lab."""
+    x, z = env.pose.heading[i]
+    return [vector[0] * x + vector[2] * z, vector[1], vector[2] * x - vector[0] * z]
+
+
+def test_the_object_is_felt(make_vec):
+    env = make_vec(REACH, 3)
+    env.reset(seed=0)
+    for i, (x, z) in enumerate(env.pose.heading):
+        # half a metre to the right of the head, which is where forward x up points
+        env.state.body_x[i, 0, [0, 2]] = env.pose.head[i, [0, 2]] + 0.5 * np.array([-z, x])
+    env.state.body_v[:, 0], env.state.body_w[:, 0] = [0.3, 0.1, -0.2], [0.5, -1.0, 2.0]
+    # so short a step moves nothing
+    env.sim_dt = 1e-9
+    observations = env.step(np.zeros((3, 42)))[0]
+    np.testing.assert_allclose(columns(env, observations, "object/0/position/")[:, [0, 2]], [[0.0, 0.5]] * 3, atol=1e-4)
+    for i in range(3):
+        spin = env.state.body_Q[i, 0].T @ env.state.body_w[i, 0]
+        for name, vector in (("axis", env.state.body_Q[i, 0, 2]), ("velocity", env.state.body_v[i, 0]), ("spin", spin)):
+            felt = columns(env, observations, f"object/0/{name}/")[i]
+            np.testing.assert_allclose(felt, in_the_heads_frame(env, i, vector), atol=1e-5)
+    # a column of radius 0.05 m, half a metre from a head of 0.125 m
+    np.testing.assert_allclose(columns(env, observations, "object/0/gap"), 0.325, atol=0.01)
+    np.testing.assert_allclose(columns(env, observations, "goal/"), [[0.0, 1.0]] * 3, atol=1e-4)
+
+
+def test_home_is_felt(make_vec):
+    env = make_vec(REACH, 2)
+    observations, _ = env.reset(seed=0)
+    np.testing.assert_allclose(columns(env, observations, "home/"), 0.0, atol=1e-7)
+    x, z = env.pose.heading.T
+    env.goal[:, 0] = env.pose.head[:, 0] + 0.3 * x - 0.2 * z
+    env.goal[:, 1] = env.pose.head[:, 2] + 0.3 * z + 0.2 * x
+    env.sim_dt = 1e-9
+    observations = env.step(np.zeros((2, 42)))[0]
+    np.testing.assert_allclose(columns(env, observations, "home/"), [[0.3, 0.2]] * 2, atol=1e-4)
+
+
+@pytest.mark.parametrize(("spread", "nearest", "furthest", "low", "high"),
+                         [("arc", 0.4, 0.4, 0.0, 90.0), ("anywhere", 0.4, 0.8, -180.0, 180.0)])  # fmt: skip
+def test_where_the_object_stands(make_vec, spread, nearest, furthest, low, high):
+    env = make_vec(REACH, 400, spread=spread)
+    observations, _ = env.reset(seed=0)
+    way = columns(env, observations, "object/0/position/")[:, [0, 2]]
+    away, bearing = np.hypot(*way.T), np.degrees(np.arctan2(way[:, 1], way[:, 0]))
+    assert nearest - 1e-5 <= away.min() and away.max() <= furthest + 1e-5
+    assert low - 1e-3 <= bearing.min() < low + 5.0 and high - 5.0 < bearing.max() <= high + 1e-3
+    assert (env.pose.gaps > 0.015).all()
+    np.testing.assert_allclose(env.state.body_Q[:, 0, 2], [[0.0, 1.0, 0.0]] * 400, atol=1e-9)

@@ -96,3 +96,30 @@ def test_heading_pays_for_turning_back_and_costs_as_much_for_turning_away(make_v
         off_course = np.arccos(cosine)
     np.testing.assert_allclose(total, -3.0 * off_course, atol=1e-6)
     assert (off_course > 0.1).all()
+
+
+@pytest.mark.slow
+def test_the_scripted_crawl_of_the_octopus_goes_half_a_metre(make_vec):
+    env = make_vec("elastica_gym/OctopusCrawl-v0", 64, duration=None, autoreset_mode=AutoresetMode.DISABLED)
+    env.reset(seed=0)
+    made, running = np.zeros(64), np.ones(64, dtype=bool)
+    for _ in range(env.max_episode_steps):
+        _, _, terminated, truncated, info = env.step(env.task.scripted_policy(env))
+        made = np.where(running, info["distance"], made)
+        running &= ~(terminated | truncated)
+    assert made.mean() > 0.5
+
+
+def test_toppling_ends_an_octopus_and_costs(make_vec):
+    env = make_vec("elastica_gym/OctopusCrawl-v0", 2, duration=2.0, autoreset_mode=AutoresetMode.DISABLED)
+    env.reset(seed=0)
+    # both arms lift as far as they can
+    lift = np.zeros((2, 42))
+    lift[0, 14:28] = 1.0
+    for _ in range(40):
+        _, reward, terminated, _, info = env.step(lift)
+        if terminated[0]:
+            break
+    assert terminated.tolist() == [True, False]
+    assert info["termination_reason"][0] == "toppled" and info["reward_toppled"].tolist() == [-10.0, 0.0]
+    assert reward[0] < -9.0
