@@ -199,6 +199,23 @@ def _patches(row, at, force, skin, scale):
         row[at + s] = scale * total
 
 
+@inline
+def _feel_object(model, state, i, b, pose, row, at, inv_length):
+    """Compute the pose of an object, and write its readings."""
+    hx, hz = pose.heading[i, 0], pose.heading[i, 1]
+    place, axis = vector(state.body_x[i, b]), vector(state.body_Q[i, b, 2])
+    length, radius = model.cylinders.length[b], model.cylinders.radius[b]
+    gap = _gap(state.x[i], state.radius[i], model.mass.size - 1, place, axis, length, radius)
+    for c in range(3):
+        pose.objects[i, b, c] = place[c]
+    pose.gaps[i, b] = gap
+    _write(row, at, inv_length, hx, hz, plus(place, -1.0, vector(pose.head[i])))
+    _write(row, at + 3, 1.0, hx, hz, axis)
+    _write(row, at + 6, inv_length, hx, hz, vector(state.body_v[i, b]))
+    _write(row, at + 9, 1.0, hx, hz, to_lab(state.body_Q[i, b], vector(state.body_w[i, b])))
+    row[at + 12] = gap * inv_length
+
+
 @entry
 def feel(model, state, senses, pose, readings):
     """Compute the pose and the readings (B, R) of every environment, in the frame of its heading.
@@ -264,14 +281,5 @@ def feel(model, state, senses, pose, readings):
             _patches(row, at, state.body_touch[i], senses.skin, n_skin / senses.weight)
             at += n_skin
         for b in range(bodies.mass.size):
-            place, axis = vector(state.body_x[i, b]), vector(state.body_Q[i, b, 2])
-            gap = _gap(x, state.radius[i], model.mass.size - 1, place, axis, bodies.length[b], bodies.radius[b])
-            for c in range(3):
-                pose.objects[i, b, c] = place[c]
-            pose.gaps[i, b] = gap
-            _write(row, at, inv_length, hx, hz, plus(place, -1.0, vector(pose.head[i])))
-            _write(row, at + 3, 1.0, hx, hz, axis)
-            _write(row, at + 6, inv_length, hx, hz, vector(state.body_v[i, b]))
-            _write(row, at + 9, 1.0, hx, hz, to_lab(state.body_Q[i, b], vector(state.body_w[i, b])))
-            row[at + 12] = gap * inv_length
+            _feel_object(model, state, i, b, pose, row, at, inv_length)
             at += 13

@@ -8,6 +8,7 @@ from math import atan2, sin, sqrt
 import numpy as np
 from numba import njit
 
+from ._linalg import _batch_matmul
 from .joint import get_relative_rotation_two_systems as get_relative_rotation_two_systems
 
 
@@ -34,15 +35,7 @@ def _get_rotation_matrix(scale, axis_collection):
 @njit(cache=True)
 def _rotate(director_collection, scale, axis_collection):
     """Return exp(-scale [a]x) Q for each frame, (3, 3, n) and (3, n) to (3, 3, n)."""
-    R = _get_rotation_matrix(scale, axis_collection)
-    n = axis_collection.shape[1]
-    result = np.zeros((3, 3, n))
-    for i in range(3):
-        for j in range(3):
-            for m in range(3):
-                for k in range(n):
-                    result[i, m, k] += R[i, j, k] * director_collection[j, m, k]
-    return result
+    return _batch_matmul(_get_rotation_matrix(scale, axis_collection), director_collection)
 
 
 @njit(cache=True)

@@ -15,7 +15,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from ..bodies.body import activate, feel, make_pose
+from ..bodies.body import Pose, activate, feel, make_pose
 from ..cosserat import advance, at_rest
 from ..cosserat.model import Array, Index
 from ..cosserat.rod import require_positive, require_stable
@@ -242,16 +242,14 @@ class BatchEnv(VectorEnv):
         self.elapsed += 1
         for old, new in zip(self._before, self.pose, strict=True):
             old[...] = new
-        self._feel()
+        self._feel(self._before)
 
-    def _feel(self) -> None:
+    def _feel(self, last: Pose) -> None:
         """Feel where the animals are; of those that have diverged, the pose stays the last sound one."""
-        last = [field.copy() for field in self.pose]
         feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
         diverged = self.pose.sound == 0
-        for old, new in zip(last, self.pose, strict=True):
-            if new is not self.pose.sound:
-                new[diverged] = old[diverged]
+        for old, new in zip(last._replace(sound=self.pose.sound), self.pose, strict=True):
+            new[diverged] = old[diverged]
 
     def _advance_physics(self) -> None:
         """Run all substeps of a control step, the environments shared among threads."""
@@ -327,7 +325,7 @@ class BatchEnv(VectorEnv):
             # a step of no duration moves nothing, and computes curvature and contact for the senses
             advance(self.body.model, self.state, self.control, i, i + 1, 0.0, 1)
             self.state.step[i] = 0
-        self._feel()
+        self._feel(Pose._make(field.copy() for field in self.pose))
         for old, new in zip(self._before, self.pose, strict=True):
             old[begun] = new[begun]
         for i in begun.tolist():
