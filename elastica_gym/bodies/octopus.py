@@ -15,15 +15,15 @@ from dataclasses import replace
 import numpy as np
 
 from ..cosserat import Rod, build_model
-from ..cosserat.model import Array, Index
+from ..cosserat.model import Array
 from ..cosserat.surroundings import Contact, Cylinder, Plane
 from ..muscles import OCTOPUS
 from .body import Body, Senses, couples_of
+from .mirror import Mirror
 
 N_ELEMENTS = 120
 HEAD = (50, 70)
 """First and last node of the head"""
-ARMS = ("first", "second")
 MIDDLE = 60
 """The node at the head's centre"""
 LENGTH = 1.0
@@ -119,50 +119,11 @@ def octopus() -> Body:
     )  # fmt: skip
     start = int(model.first_slot[0])
     return Body(
-        name="octopus", rods=(rod,), cylinders=(thing,), model=model, muscles=OCTOPUS, arms=ARMS,
+        name="octopus", rods=(rod,), cylinders=(thing,), model=model, muscles=OCTOPUS, arms=("first", "second"),
+        mirror=Mirror(across="forward", arms=("first", "second")),
         couples=couples_of(OCTOPUS, rod, model), sim_dt=SIM_DT,
         settling=1.0, senses=_senses(start, float(rod.nodal_mass.sum() * GRAVITY)),
     )  # fmt: skip
-
-
-def mirror_image(names: tuple[str, ...]) -> tuple[Index, Array]:
-    """Return where the octopus' mirror image has each of its numbers, and with which sign.
-
-    The mirror stands across the head's axis. It exchanges the arms, and turns the direction from the first to the second:
-    with it forward components change sign, and the rod is counted from its other end. So its twist does too, while
-    bending about normal and binormal keeps its sign in an arm that is the other's image. Of angular velocity,
-    which mirrors turn the other way round, all but the forward component changes sign.
-
-    Parameters
-    ----------
-    names : tuple of str
-        Observations (``observation_names`` of an environment) or actions (`elastica_gym.muscles.activation_names`).
-
-    Returns
-    -------
-    tuple
-        Index (d,) and sign (d,): the mirror image of values v is ``v[index] * sign``.
-    """
-    place = {name: i for i, name in enumerate(names)}
-    twins = [_twin(name, names) for name in names]
-    return np.array([place[twin] for twin in twins]), np.array([-1.0 if _is_turned(name) else 1.0 for name in names])
-
-
-def _twin(name: str, names: tuple[str, ...]) -> str:
-    """Return the name of what the mirror shows in place of a number."""
-    kind, *rest = name.split("/")
-    if kind in ("position", "velocity", "curvature", "roll", "contact", "touch"):
-        count = len({each.split("/")[1] for each in names if each.startswith(f"{kind}/")})
-        return "/".join([kind, str(count - 1 - int(rest[0])), *rest[1:]])
-    other = {ARMS[0]: ARMS[1], ARMS[1]: ARMS[0]}
-    return "/".join(other.get(part, part) for part in name.split("/"))
-
-
-def _is_turned(name: str) -> bool:
-    parts = name.split("/")
-    if "spin" in parts:
-        return parts[-1] in ("up", "right")
-    return parts[-1] in ("forward", "twist") or "tangent" in parts
 
 
 def _senses(start: int, weight: float) -> Senses:
