@@ -4,7 +4,7 @@ Friction takes from the speed what it gives to the spin, until both fit: v = v0/
 """
 
 import numpy as np
-from axial_friction import ACROSS, MASS, RADIUS, energies, resting
+from axial_friction import ACROSS, MASS, energies, resting
 from case import Result, show
 
 SPEED = 1.0
