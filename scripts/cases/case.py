@@ -26,6 +26,8 @@ class Result:
         What it must stay below.
     labels : tuple of str
         What is measured, one text for each curve.
+    reference : str
+        What it is compared with.
     scale : str
         Of both axes of the picture, "linear" or "log".
     """
@@ -40,6 +42,7 @@ class Result:
     error: float
     bound: float
     labels: tuple[str, ...] = ("measured",)
+    reference: str = "theory"
     scale: str = "linear"
 
 
@@ -55,8 +58,8 @@ def show(measure: Callable[[], Result], name: str) -> None:
 
     result = measure()
     figure, axes = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
-    theory = axes.plot(result.exact_x, result.exact, color="black", linewidth=1.0)
-    theory[0].set_label("theory")
+    theory = axes.plot(result.exact_x, result.exact, color="black", linewidth=1.0, zorder=3)
+    theory[0].set_label(result.reference)
     for curve, label in zip(np.atleast_2d(result.measured.T), result.labels, strict=True):
         axes.plot(result.x, curve, "o", markersize=4, label=label)
     axes.set(title=result.title, xlabel=result.x_label, ylabel=result.y_label, xscale=result.scale, yscale=result.scale)
