@@ -13,19 +13,22 @@ from elastica_gym.cosserat.kernels.rotations import (
 )
 from elastica_gym.cosserat.surroundings import Plane
 
-from .scenes import GRAVITY, TIME_STEP, WAVE, disturb, ground, kinked, motion, rotations, snake
+from .scenes import (
+    GRAVITY,
+    TIME_STEP,
+    WAVE,
+    disturb,
+    energy,
+    exact_rotation_vectors,
+    ground,
+    kinked,
+    momenta,
+    motion,
+    rotations,
+    snake,
+)
 
 # curvature
-
-
-def exact_rotation_vectors(Q):
-    """Return the logarithms of Q[k+1] Q[k]^T in extended precision, negated, (3, n - 1)."""
-    wide = Q.astype(np.longdouble)
-    R = np.einsum("ijk,ljk->ilk", wide[..., 1:], wide[..., :-1])
-    a = 0.5 * np.stack([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    size = np.sqrt((a * a).sum(axis=0))
-    theta = np.arctan2(size, 0.5 * (R[0, 0] + R[1, 1] + R[2, 2] - 1.0))
-    return -np.where(size > 0.0, theta / np.where(size > 0.0, size, 1.0), 1.0) * a
 
 
 @pytest.mark.skipif(np.finfo(np.longdouble).eps > 1e-18, reason="no extended precision to compare with")
@@ -76,15 +79,6 @@ def test_directors_stay_orthonormal(n_steps):
 
 
 # conservation
-
-
-def momenta(rod, model, state):
-    """Return momentum and angular momentum about the origin, and the sizes of their terms."""
-    x, v, Q, w = motion(model, state)
-    m = rod.nodal_mass
-    e = np.linalg.norm(np.diff(x, axis=1), axis=0) / rod.rest_length
-    spin = np.einsum("jik,jk->ik", Q, rod.inertia * w / e)
-    return (m * v).sum(axis=1), (m * np.cross(x, v, axis=0)).sum(axis=1) + spin.sum(axis=1)
 
 
 def driven(rod, couples, **options):
@@ -142,19 +136,6 @@ def test_internal_loads_balance(seed, is_balanced):
     assert rest < (1e-12 if is_balanced else 1e-2)
     if not is_balanced:
         assert rest > 1e-9
-
-
-def energy(rod, model, state):
-    """Return kinetic and elastic energy [J]."""
-    x, v, Q, w = motion(model, state)
-    e = np.linalg.norm(np.diff(x, axis=1), axis=0) / rod.rest_length
-    sigma = np.einsum("ijk,jk->ik", Q, np.diff(x, axis=1)) / rod.rest_length - np.array([[0.0], [0.0], [1.0]])
-    kappa = exact_rotation_vectors(Q).astype(np.float64) / rod.rest_voronoi_length
-    return 0.5 * float(
-        (rod.nodal_mass * v * v).sum() + (rod.inertia * w * w / e).sum()
-        + (rod.shear_stiffness * sigma * sigma * rod.rest_length).sum()
-        + (rod.bend_stiffness * (kappa - rod.rest_kappa) ** 2 * rod.rest_voronoi_length).sum()
-    )  # fmt: skip
 
 
 def test_energy_of_a_swinging_rod():
