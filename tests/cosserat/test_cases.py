@@ -34,6 +34,17 @@ def test_a_thick_butterfly_keeps_its_energy_only_with_the_tension_that_the_model
     assert half < 0.55 * whole < 0.55 * 1e-2
 
 
+def test_a_plectoneme_lies_on_itself(load):
+    case = load("plectoneme")
+    nodes = case.wind()[1][-1]
+    apart = np.linalg.norm(nodes[:, :, None] - nodes[:, None, :], axis=0)
+    i, j = np.indices(apart.shape)
+    far_along = apart[i - j > 4.0 * np.pi * case.RADIUS / case.LENGTH * case.N]
+    # contact is a spring: it gives by a tenth of a radius
+    assert 1.8 * case.RADIUS < far_along.min() < 2.0 * case.RADIUS
+    assert case.compute_writhe(nodes[None], case.LENGTH)[0] < -2.5
+
+
 @pytest.mark.slow
 def test_helical_buckling_converges_in_second_order(load):
     case, sizes = load("helical_buckling"), (100, 200, 400)
