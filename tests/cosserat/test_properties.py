@@ -176,7 +176,7 @@ def pair_in_a_field(shape: Shape, damper: str, is_joint_damped: bool) -> tuple[S
 def test_energy_does_not_grow_without_work(shape, part, damper, is_joint_damped):
     made, rods, energies = pair_in_a_field(shape, damper, is_joint_damped)
     start, size = energies()
-    # in space the documented torques leave their energy in second order of the angles between elements
+    # in space energy stays to second order of the angles between elements
     off = off_by_steps(part) + shape.speed + 2e-3
     for _ in range(20):
         run(made, part * ea.stable_time_step(rods[0]), round(20 / part))
