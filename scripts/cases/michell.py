@@ -2,8 +2,8 @@
 
 A straight rod of stiffness B of bending and C of twist is bent to a ring of radius R, and twisted before it is closed.
 Its mode of n waves, in and out of the plane at once, has the squared frequencies n^2 (n^2 - 1) x/(rho A R^4), where
-(n^2 + 1) x^2 - 2 n^2 B x + (n^2 - 1) B^2 - M^2 = 0, with M = C R times the twist, follows from Kirchhoff's equations
-without rotational inertia. For n = 2 the lower one is negative, and the ring buckles, above M = sqrt(3) B.
+(n^2 + 1) x^2 - 2 n^2 B x + (n^2 - 1) B^2 - M^2 = 0, with M = C times the turns of twist, follows from Kirchhoff's
+equations without rotational inertia. For n = 2 the lower one is negative, and the ring buckles, above M = sqrt(3) B.
 """
 
 import numpy as np
