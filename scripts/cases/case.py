@@ -17,13 +17,19 @@ class Result:
     title, x_label, y_label : str
         Texts of the picture.
     x, measured : np.ndarray
-        Points, (n,).
+        Points, (n,); of several curves, (n,) and (n, c).
     exact_x, exact : np.ndarray
-        The curve of theory, (m,).
+        The curve of theory, (m,); several, (m,) and (m, c).
     error : float
         The figure that is compared.
     bound : float
         What it must stay below.
+    labels : tuple of str
+        What is measured, one text for each curve.
+    reference : str
+        What it is compared with.
+    scale : str
+        Of both axes of the picture, "linear" or "log".
     """
 
     title: str
@@ -35,6 +41,9 @@ class Result:
     exact: np.ndarray
     error: float
     bound: float
+    labels: tuple[str, ...] = ("measured",)
+    reference: str = "theory"
+    scale: str = "linear"
 
 
 def show(measure: Callable[[], Result], name: str) -> None:
@@ -49,9 +58,11 @@ def show(measure: Callable[[], Result], name: str) -> None:
 
     result = measure()
     figure, axes = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
-    axes.plot(result.exact_x, result.exact, color="black", linewidth=1.0, label="theory")
-    axes.plot(result.x, result.measured, "o", markersize=4, label="measured")
-    axes.set(title=result.title, xlabel=result.x_label, ylabel=result.y_label)
+    theory = axes.plot(result.exact_x, result.exact, color="black", linewidth=1.0, zorder=3)
+    theory[0].set_label(result.reference)
+    for curve, label in zip(np.atleast_2d(result.measured.T), result.labels, strict=True):
+        axes.plot(result.x, curve, "o", markersize=4, label=label)
+    axes.set(title=result.title, xlabel=result.x_label, ylabel=result.y_label, xscale=result.scale, yscale=result.scale)
     axes.legend(frameon=False)
     arguments.out.mkdir(parents=True, exist_ok=True)
     path = arguments.out / f"{name}.png"

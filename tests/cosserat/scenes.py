@@ -1,6 +1,7 @@
 """Rods and surroundings that the tests and the benchmark share."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elastica_gym.cosserat import Rod, State, Wave
 from elastica_gym.cosserat.model import Array, Model
@@ -133,3 +134,35 @@ def without_contact(model: Model) -> Model:
     """Return a model whose rods touch neither cylinders nor each other."""
     none = type(model.cylinders)(*(column[:0] for column in model.cylinders))
     return model._replace(cylinders=none, rod_contact=model.rod_contact._replace(is_on=False))
+
+
+def exact_rotation_vectors(Q: Array) -> NDArray[np.longdouble]:
+    """Return the logarithms of Q[k+1] Q[k]^T in extended precision, negated, (3, n - 1)."""
+    wide = Q.astype(np.longdouble)
+    R = np.einsum("ijk,ljk->ilk", wide[..., 1:], wide[..., :-1])
+    a = 0.5 * np.stack([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    size = np.sqrt((a * a).sum(axis=0))
+    theta = np.arctan2(size, 0.5 * (R[0, 0] + R[1, 1] + R[2, 2] - 1.0))
+    return -np.where(size > 0.0, theta / np.where(size > 0.0, size, 1.0), 1.0) * a
+
+
+def energy(rod: Rod, model: Model, state: State) -> float:
+    """Return kinetic and elastic energy [J]."""
+    x, v, Q, w = motion(model, state)
+    e = np.linalg.norm(np.diff(x, axis=1), axis=0) / rod.rest_length
+    sigma = np.einsum("ijk,jk->ik", Q, np.diff(x, axis=1)) / rod.rest_length - np.array([[0.0], [0.0], [1.0]])
+    kappa = exact_rotation_vectors(Q).astype(np.float64) / rod.rest_voronoi_length
+    return 0.5 * float(
+        (rod.nodal_mass * v * v).sum() + (rod.inertia * w * w / e).sum()
+        + (rod.shear_stiffness * sigma * sigma * rod.rest_length).sum()
+        + (rod.bend_stiffness * (kappa - rod.rest_kappa) ** 2 * rod.rest_voronoi_length).sum()
+    )  # fmt: skip
+
+
+def momenta(rod: Rod, model: Model, state: State) -> tuple[Array, Array]:
+    """Return a rod's momentum, and its angular momentum about the origin, (3,) each."""
+    x, v, Q, w = motion(model, state)
+    m = rod.nodal_mass
+    e = np.linalg.norm(np.diff(x, axis=1), axis=0) / rod.rest_length
+    spin = np.einsum("jik,jk->ik", Q, rod.inertia * w / e)
+    return (m * v).sum(axis=1), (m * np.cross(x, v, axis=0)).sum(axis=1) + spin.sum(axis=1)

@@ -1,0 +1,79 @@
+"""A rod on a plane, pushed along itself, moves only above static friction, and then against the kinetic one.
+
+Coulomb friction as in Gazzola et al. 2018, appendix D.
+"""
+
+import numpy as np
+from case import Result, show
+
+from elastica_gym.cosserat import (
+    AnisotropicFrictionalPlane,
+    BaseSystemCollection,
+    CosseratRod,
+    Forcing,
+    GravityForces,
+    PositionVerlet,
+    UniformForces,
+    integrate,
+    stable_time_step,
+)
+
+LENGTH, RADIUS, MASS = 1.0, 0.025, 1.0
+KINETIC, STATIC, G = 0.4, 0.8, 9.81
+"""Coefficients of friction, and gravity [m/s^2]"""
+DURATION = 0.25
+"""After which energies are measured [s]"""
+AXIS, ACROSS, UP = np.eye(3)
+
+
+class Simulator(BaseSystemCollection, Forcing):
+    """A rod, a plane, and what moves it."""
+
+
+def resting() -> CosseratRod:
+    """Return a rod that lies on the ground along ``AXIS``."""
+    return CosseratRod.straight_rod(
+        20, RADIUS * UP, AXIS, UP, LENGTH, RADIUS, MASS / (np.pi * RADIUS**2 * LENGTH), youngs_modulus=1e6,
+        shear_modulus=4e5,
+    )  # fmt: skip
+
+
+def energies(rod: CosseratRod, *loads: tuple, gravity: np.ndarray = -G * UP) -> tuple[float, float]:
+    """Return energies of translation and of rotation of a rod that loads, (class, *arguments) each, have moved [J]."""
+    simulator = Simulator()
+    simulator.append(rod)
+    for kind, *arguments in loads:
+        simulator.add_forcing_to(rod).using(kind, *arguments)
+    simulator.add_forcing_to(rod).using(GravityForces, gravity)
+    simulator.add_forcing_to(rod).using(
+        AnisotropicFrictionalPlane, k=10.0, nu=1e-4, plane_origin=np.zeros(3), plane_normal=UP, slip_velocity_tol=1e-6,
+        static_mu_array=np.full(3, STATIC), kinetic_mu_array=np.full(3, KINETIC),
+    )  # fmt: skip
+    simulator.finalize()
+    # between sticking and slipping, each rod gets some steps of the other
+    steps = int(DURATION / (0.02 * stable_time_step(rod)))
+    integrate(PositionVerlet(), simulator, DURATION, steps, progress_bar=False)
+    return rod.compute_translational_energy(), rod.compute_rotational_energy()
+
+
+def pushed(force: float) -> float:
+    """Return the energy of a rod that is pushed along itself [J]."""
+    return energies(resting(), (UniformForces, force, AXIS))[0]
+
+
+def exact(force: np.ndarray) -> np.ndarray:
+    """Return this energy by theory [J]."""
+    speed = (force - KINETIC * MASS * G) / MASS * DURATION
+    return np.where(force > STATIC * MASS * G, 0.5 * MASS * speed**2, 0.0)
+
+
+def measure() -> Result:
+    """Return the energy over the force: none up to the static threshold, and then that of the force less friction."""
+    forces, fine = STATIC * MASS * G * np.array([0.2, 0.6, 0.99, 1.01, 1.5, 2.0]), np.linspace(0.0, 16.0, 1000)
+    found = np.array([pushed(force) for force in forces])
+    return Result("Axial friction", "force [N]", "energy [J]", forces, found, fine, exact(fine),
+                  float(np.abs(found - exact(forces)).max() / exact(forces).max()), 1e-3)  # fmt: skip
+
+
+if __name__ == "__main__":
+    show(measure, "axial_friction")
