@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import elastica_gym
 from agents.checks import BadInputError, make_folder, require_extra, run_command
 
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "E
     return {
         "name": name,
         "environment": config["env"],
+        "package": f"elastica-gym {elastica_gym.__version__}",
         "env_kwargs": config["hyperparameters"].get("env_kwargs") or {},
         "algorithm": config["algo"],
         "seed": config["seed"],

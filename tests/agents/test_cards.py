@@ -16,8 +16,8 @@ from agents.policies import load_run
 from tests.agents.commands import FORWARD, REACH, ROOT, SMALL_PPO, run
 from tests.agents.test_bad_input import refused
 
-CARD = {"name", "environment", "env_kwargs", "algorithm", "seed", "command", "steps", "wall_time_minutes", "score",
-        "scored_with", "hyperparameters", "versions"}  # fmt: skip
+CARD = {"name", "environment", "package", "env_kwargs", "algorithm", "seed", "command", "steps", "wall_time_minutes",
+        "score", "scored_with", "hyperparameters", "versions"}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
