@@ -109,9 +109,9 @@ def _rows(values: np.ndarray, batch: Any) -> np.ndarray:
     return np.repeat(values, batch.num_envs // len(values), axis=0)
 
 
-COUPLES = tuple(Parameter(f"coefficient_{i}", b, 2e-3, -0.01, 0.01) for i, b in enumerate(SEED_COEFFICIENTS))
-"""Spline coefficients [N m], up to twice what the muscles can do"""
-WAVE_LENGTH = Parameter("wave_length", 1.0, 0.3, 0.3, 3.0)
+COUPLES = tuple(Parameter(f"coefficient_{i}", b, 4e-3, -0.03, 0.03) for i, b in enumerate(SEED_COEFFICIENTS))
+"""Spline coefficients [N m], up to five times what the muscles can do: where these fall short, they do what they can"""
+WAVE_LENGTH = Parameter("wave_length", 1.0, 0.5, 0.2, 10.0)
 """In body lengths"""
 
 

@@ -26,7 +26,7 @@ class SearchArguments:
     seed: int = 0
     """Seed of the search; its starts have the seeds seed, seed + 1, ..."""
     evaluations: int | None = None
-    """Candidates to evaluate, over all restarts; by default 4,000, or no limit if minutes are given."""
+    """Candidates to evaluate, over all restarts; by default 6,000, or no limit if minutes are given."""
     minutes: float | None = None
     """Wall-clock budget."""
     restarts: int = 3
@@ -47,7 +47,7 @@ class SearchArguments:
 
 LOWEST = {"seed": 0, "evaluations": 1, "minutes": 0.001, "restarts": 0, "population": 4, "threads": 1,
           "evaluation_episodes": 1, "evaluation_seed": 0}  # fmt: skip
-DEFAULT_EVALUATIONS = 4000
+DEFAULT_EVALUATIONS = 6000
 
 
 def main() -> None:
