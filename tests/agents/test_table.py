@@ -2,7 +2,7 @@
 
 import importlib.util
 import json
-import shutil
+import re
 import subprocess
 import sys
 
@@ -60,27 +60,31 @@ def test_cells():
 
 
 def test_the_table_is_made_cell_by_cell(tmp_path):
-    """In a few seconds of training, and again after a kill, which leaves a folder without a result."""
-    options = "--minutes", 0.001, "--seeds", 1, "--episodes", 2, "--out", tmp_path, "--only", "SnakeForward-v0"
-    command(*options, "zero", "cma", "ppo")
+    """In a few seconds of training, after a kill in the middle of one, which leaves a folder without a result."""
     cells = tmp_path / "cells"
-    assert sorted(p.stem for p in cells.glob("*.json")) == [f"SnakeForward-v0-{p}-0" for p in ("cma", "ppo", "zero")]
+    killed = cells / "SnakeForward-v0-ppo-0"
+    killed.mkdir(parents=True)
+    (killed / "config.yml").write_text("of a run that was killed")
+    options = "--minutes", 0.001, "--seeds", 1, "--episodes", 2, "--out", tmp_path
+    which = "--only", "SnakeForward-v0", "zero", "cma", "ppo"
+    assert "0 of 3 cells are there already" in command(*options, *which)
+    results = {path.stem: json.loads(path.read_text()) for path in cells.glob("*.json")}
+    assert sorted(results) == [f"SnakeForward-v0-{policy}-0" for policy in ("cma", "ppo", "zero")]
+    for name, cell in results.items():
+        assert len(cell["returns"]) == len(cell["distances"]) == 2
+        assert (cell["seconds"] > 0.0) == ("zero" not in name)
     table = (tmp_path / "table.md").read_text()
-    rows = [line.split(" | ")[:2] for line in table.splitlines() if line.startswith("| Snake")]
+    rows = [line.split(" | ") for line in table.splitlines() if line.startswith("| Snake")]
     assert [row[1] for row in rows] == ["zero", "CMA-ES", "PPO"]
+    mean, low, high = map(float, re.fullmatch(r"(.*) \((.*) to (.*)\)", rows[1][3]).groups())
+    assert low <= mean <= high
+    assert mean == pytest.approx(np.mean(results["SnakeForward-v0-cma-0"]["distances"]), abs=1e-3)
     assert (tmp_path / "table.png").read_bytes().startswith(b"\x89PNG")
-    ppo = json.loads((cells / "SnakeForward-v0-ppo-0.json").read_text())
-    assert len(ppo["returns"]) == 2 and ppo["seconds"] > 0.0
 
-    (cells / "SnakeForward-v0-ppo-0.json").unlink()
-    shutil.rmtree(cells / "SnakeForward-v0-ppo-0")
-    (cells / "SnakeForward-v0-ppo-0").mkdir()
-    (cells / "SnakeForward-v0-ppo-0" / "config.yml").write_text("of a run that was killed")
-    before = (cells / "SnakeForward-v0-cma-0.json").stat().st_mtime_ns
-    assert "2 of 3 cells are there already" in command(*options, "zero", "cma", "ppo")
-    assert (cells / "SnakeForward-v0-cma-0.json").stat().st_mtime_ns == before
-    # training with a seed is reproducible to the bit: as many steps are one update
-    assert json.loads((cells / "SnakeForward-v0-ppo-0.json").read_text())["returns"] == ppo["returns"]
+    written = {path: path.stat().st_mtime_ns for path in cells.glob("*.json")}
+    assert "3 of 3 cells are there already" in command(*options, *which)
+    assert {path: path.stat().st_mtime_ns for path in cells.glob("*.json")} == written
+    assert (tmp_path / "table.md").read_text() == table
 
 
 def test_cells_of_other_settings_are_not_mixed(tmp_path):
