@@ -59,7 +59,7 @@ class Search:
             self.budget = Budget(steps=self.config["evaluations"], minutes=self.config["minutes"])
             try:
                 number = 0
-                while self._spent() < 1.0:
+                while self.evaluations == 0 or self._spent() < 1.0:
                     self._descend(number)
                     number += 1
             finally:
@@ -82,7 +82,8 @@ class Search:
         end = min(1.0, (number + 1) / (self.config["restarts"] + 1))
         strategy = self._strategy(number)
         generation, last = 0, strategy.x0
-        while self._spent() < end and not strategy.stop():
+        # one generation at least, so that the shortest search finds something
+        while generation == 0 or (self._spent() < end and not strategy.stop()):
             candidates = np.array(strategy.ask())
             values, _ = self._values(self._batch, candidates, self._draw_starts())
             strategy.tell(list(candidates), list(-values))

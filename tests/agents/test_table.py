@@ -65,7 +65,7 @@ def test_the_table_is_made_cell_by_cell(tmp_path):
     killed = cells / "SnakeForward-v0-ppo-0"
     killed.mkdir(parents=True)
     (killed / "config.yml").write_text("of a run that was killed")
-    options = "--minutes", 0.001, "--seeds", 1, "--episodes", 2, "--out", tmp_path
+    options = "--minutes", 0.02, "--seeds", 1, "--episodes", 2, "--out", tmp_path
     which = "--only", "SnakeForward-v0", "zero", "cma", "ppo"
     assert "0 of 3 cells are there already" in command(*options, *which)
     results = {path.stem: json.loads(path.read_text()) for path in cells.glob("*.json")}
@@ -96,5 +96,5 @@ def test_cells_of_other_settings_are_not_mixed(tmp_path):
 
 @pytest.mark.slow
 def test_off_policy_cells(tmp_path):
-    command("--minutes", 0.001, "--seeds", 1, "--episodes", 2, "--out", tmp_path, "--only", "SnakeForward-v0", "sac")
+    command("--minutes", 0.02, "--seeds", 1, "--episodes", 2, "--out", tmp_path, "--only", "SnakeForward-v0", "sac")
     assert "| SnakeForward-v0 | SAC |" in (tmp_path / "table.md").read_text()
