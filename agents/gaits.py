@@ -171,7 +171,7 @@ STROKE = Gait(
     (
         Parameter("period", 0.8, 0.2, 0.3, 3.0),
         *(
-            Parameter(f"{direction}_{part}_{function}", 0.0, 0.5, -3.0, 3.0)
+            Parameter(f"{direction}_{part}_{function}", 0.0, 0.3, -3.0, 3.0)
             for direction in ("always", "forward", "right")
             for part in ("offset", "sine", "cosine")
             for function in OCTOPUS_FUNCTIONS
