@@ -12,7 +12,7 @@ from typing import NoReturn
 EXTRAS = {
     "train": {
         **{"stable-baselines3": "2.9", "torch": "2.3", "tyro": "0.9", "rich": "13"},
-        **{"matplotlib": "3.8", "pyyaml": "6"},
+        **{"matplotlib": "3.8", "pyyaml": "6", "cma": "4"},
     },
     "viz": {"rerun-sdk": "0.41"},
 }
@@ -24,12 +24,13 @@ class BadInputError(Exception):
 
 
 def choose(what: str, name: str, valid: Collection[str]) -> str:
-    """Return `name` if it is one of `valid`, otherwise raise ``BadInputError`` naming the nearest."""
+    """Return `name` if it is one of `valid`, otherwise raise ``BadInputError`` naming them, the nearest first."""
     if name in valid:
         return name
-    near = difflib.get_close_matches(name, valid, n=1, cutoff=0.3)
+    near = difflib.get_close_matches(name, valid, n=max(1, len(valid)), cutoff=0.3)
     hint = f"; did you mean {near[0]!r}?" if near else "."
-    raise BadInputError(f"Unknown {what} {name!r}{hint} Valid: {', '.join(sorted(valid))}.")
+    there = [*near, *sorted(set(valid) - set(near))]
+    raise BadInputError(f"Unknown {what} {name!r}{hint} Valid: {', '.join(there)}.")
 
 
 def missing_extra(extra: str) -> str | None:

@@ -1,9 +1,9 @@
-"""Evaluate a policy: ``python -m agents.evaluate --run DIR`` or ``--policy scripted --env ID``."""
+"""Evaluate a policy: ``python -m agents.evaluate --run DIR``, ``--pretrained NAME`` or ``--policy NAME --env ID``."""
 
 import dataclasses
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ from agents.checks import (
 
 if TYPE_CHECKING:
     from agents.policies import Policy
+    from agents.vec_env import BatchVecEnv
 
 LARGEST_BATCH = 1024
 """Episodes that run side by side; more than these are run in turns."""
@@ -104,29 +105,34 @@ def _evaluate_batch(
 
     env = make_batch_vec_env(env_id, n_envs=len(seeds), n_threads=n_threads, **env_kwargs)
     try:
-        env.seed(seeds[0])
-        observations = env.reset()
-        _check_fits(policy, observations.shape[1:], env_id)
-        policy.reset(seeds)
-        infos: dict[int, dict[str, Any]] = {}
-        while len(infos) < len(seeds):
-            env.step_async(policy(observations, env.batch))
-            observations, _, dones, step_infos = env.step_wait()
-            for i in np.flatnonzero(dones):
-                # an environment that is done goes on with episodes that nobody counts until the last one is done
-                infos.setdefault(int(i), step_infos[i])
-        return _collect(seeds, [infos[i] for i in range(len(seeds))])
+        _check_fits(policy, env.observation_space.shape, env_id)
+        return run_episodes(policy, env, seeds)
     finally:
         env.close()
 
 
-def _check_fits(policy: "Policy", shape: tuple[int, ...], env_id: str) -> None:
+def run_episodes(policy: "Policy", env: "BatchVecEnv", seeds: Sequence[int]) -> Evaluation:
+    """Run one episode in each environment, with a seed for each."""
+    env.seed(seeds)
+    observations = env.reset()
+    policy.reset(seeds)
+    infos: dict[int, dict[str, Any]] = {}
+    while len(infos) < len(seeds):
+        env.step_async(policy(observations, env.batch))
+        observations, _, dones, step_infos = env.step_wait()
+        for i in np.flatnonzero(dones):
+            # an environment that is done goes on with episodes that nobody counts until the last one is done
+            infos.setdefault(int(i), step_infos[i])
+    return _collect(seeds, [infos[i] for i in range(len(seeds))])
+
+
+def _check_fits(policy: "Policy", shape: tuple[int, ...] | None, env_id: str) -> None:
     model = getattr(policy, "model", None)
     if model is not None and model.observation_space.shape != shape:
         raise BadInputError(f"The model observes {model.observation_space.shape}, but {env_id} gives {shape}.")
 
 
-def _collect(seeds: list[int], infos: list[dict[str, Any]]) -> Evaluation:
+def _collect(seeds: Sequence[int], infos: list[dict[str, Any]]) -> Evaluation:
     episodes = [info["episode"] for info in infos]
     terms = [key for key in episodes[0] if key.startswith("reward_")]
     return Evaluation(
@@ -177,14 +183,16 @@ def success_interval(successes: np.ndarray) -> tuple[float, float]:
 
 @dataclasses.dataclass
 class EvaluateArguments:
-    """Evaluate a trained run or a baseline on episodes with the seeds seed, seed + 1, ..."""
+    """Evaluate a trained run, a pretrained policy or a baseline on episodes with the seeds seed, seed + 1, ..."""
 
     run: Path | None = None
     """Folder of a run of agents.train."""
+    pretrained: str | None = None
+    """Instead of a run: the name of a policy in agents/pretrained."""
     policy: str | None = None
-    """Instead of a run: zero, random, scripted or seed_gait."""
+    """Instead of a run: zero, random, scripted, seed_gait, or the gait.yml that agents.search wrote."""
     env: str | None = None
-    """Environment id; by default the one that the run was trained on."""
+    """Environment id; by default the one that the policy was trained or searched on."""
     spread: str | None = None
     """How starts are drawn, for tasks that know several: of OctopusReach arc or anywhere."""
     episodes: int = 50
@@ -218,7 +226,7 @@ def main() -> None:
         n_threads=arguments.n_threads,
         env_kwargs=env_kwargs,
     )
-    name = arguments.policy or str(arguments.run)
+    name = arguments.policy or arguments.pretrained or str(arguments.run)
     print_table(f"{name} on {env_id}, {arguments.episodes} episodes from seed {arguments.seed}", result)
     if arguments.json is not None:
         make_folder(arguments.json.parent)
@@ -229,23 +237,39 @@ def main() -> None:
 
 
 def _policy_and_environment(arguments: EvaluateArguments) -> "tuple[Policy, str, dict[str, Any]]":
-    if (arguments.run is None) == (arguments.policy is None):
-        raise BadInputError("Give either --run DIR or --policy zero|random|scripted|seed_gait.")
+    if sum(given is not None for given in (arguments.run, arguments.pretrained, arguments.policy)) != 1:
+        raise BadInputError("Give either --run DIR, --pretrained NAME or --policy zero|random|scripted|seed_gait|FILE.")
     if arguments.env is not None:
         choose("environment", arguments.env, environment_ids())
     # torch takes seconds to import: not before the arguments are known to be good
-    from agents.policies import baseline, load_run
+    from agents.cards import load_pretrained
+    from agents.policies import load_run
 
     if arguments.policy is not None:
-        if arguments.env is None:
-            raise BadInputError(f"--policy needs --env, one of {', '.join(environment_ids())}.")
-        if arguments.policy == "seed_gait" and "Snake" not in arguments.env:
-            raise BadInputError(f"seed_gait is the snake's published gait; {arguments.env} is not a snake's.")
-        return baseline(arguments.policy), arguments.env, {}
-    assert arguments.run is not None
-    policy, config = load_run(arguments.run)
-    env_kwargs = config["hyperparameters"].get("env_kwargs") or {}
-    return policy, arguments.env or choose("environment", config["env"], environment_ids()), env_kwargs
+        return *_baseline_and_environment(arguments.policy, arguments.env), {}
+    policy: Policy
+    if arguments.pretrained is not None:
+        policy, card = load_pretrained(arguments.pretrained)
+        env_id, env_kwargs = card["environment"], card["env_kwargs"]
+    else:
+        assert arguments.run is not None
+        policy, config = load_run(arguments.run)
+        env_id, env_kwargs = config["env"], config["hyperparameters"].get("env_kwargs") or {}
+    return policy, arguments.env or choose("environment", env_id, environment_ids()), env_kwargs
+
+
+def _baseline_and_environment(name: str, env_id: str | None) -> "tuple[Policy, str]":
+    from agents.gaits import load_gait
+    from agents.policies import baseline
+
+    if Path(name).suffix == ".yml":
+        gait, searched_on = load_gait(Path(name))
+        return gait, env_id or choose("environment", searched_on, environment_ids())
+    if env_id is None:
+        raise BadInputError(f"--policy needs --env, one of {', '.join(environment_ids())}.")
+    if name == "seed_gait" and "Snake" not in env_id:
+        raise BadInputError(f"seed_gait is the snake's published gait; {env_id} is not a snake's.")
+    return baseline(name), env_id
 
 
 def spreads(env_id: str) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """Policies behind one interface: zero, random, scripted, and trained runs."""
 
+import dataclasses
 import pickle
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -73,6 +74,21 @@ class ScriptedPolicy:
         return (self._script or batch.task.scripted_policy)(batch).astype(np.float32)
 
 
+@dataclasses.dataclass(frozen=True)
+class Statistics:
+    """The normalisation of observations of a ``VecNormalize``, without the rest of it; its fields are arrays (d,)."""
+
+    mean: np.ndarray
+    variance: np.ndarray
+    epsilon: float
+    clip: float
+
+    def normalize_obs(self, observations: np.ndarray) -> np.ndarray:
+        """Return observations with mean 0 and variance 1, clipped, as ``VecNormalize`` computes them."""
+        scaled = (observations - self.mean) / np.sqrt(self.variance + self.epsilon)
+        return np.clip(scaled, -self.clip, self.clip).astype(np.float32)
+
+
 class TrainedPolicy:
     """A Stable-Baselines3 model with the normalisation it was trained with; its mean action, without exploration.
 
@@ -81,7 +97,7 @@ class TrainedPolicy:
     model
         A PPO or SAC model.
     normalization
-        The ``VecNormalize`` of its training, or None.
+        The ``VecNormalize`` of its training, or its `Statistics`, or None.
     """
 
     def __init__(self, model: Any, normalization: Any | None):

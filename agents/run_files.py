@@ -1,4 +1,4 @@
-"""The tables of a run: metrics.csv, a row per update, and evaluations.csv, a row per evaluation."""
+"""The tables of a run: a row per update, per evaluation, or per generation of a search."""
 
 import csv
 import errno
@@ -11,6 +11,9 @@ import numpy as np
 
 METRICS = "metrics.csv"
 EVALUATIONS = "evaluations.csv"
+SEARCH = "search.csv"
+GAIT = "gait.yml"
+"""The best gait of a search"""
 
 
 class Table:

@@ -1,7 +1,7 @@
 """The batched environment presented as a Stable-Baselines3 ``VecEnv``."""
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import gymnasium as gym
@@ -52,6 +52,15 @@ class BatchVecEnv(VecEnv):
         self._sums = {key: np.zeros(self.num_envs) for key in ("r", *self.term_keys)}
         self._lengths = np.zeros(self.num_envs, np.int64)
         self._started = time.time()
+
+    def seed(self, seed: int | Sequence[int] | None = None) -> Sequence[int | None]:
+        """Seed environment i with ``seed + i``, or each with its own of a sequence, at the next reset."""
+        if seed is None or isinstance(seed, (int, np.integer)):
+            return super().seed(None if seed is None else int(seed))
+        if len(seed) != self.num_envs:
+            raise ValueError(f"seed must have one number for each of {self.num_envs} environments, got {len(seed)}")
+        self._seeds = list(seed)
+        return self._seeds
 
     def reset(self) -> np.ndarray:
         """Reset every environment, with the seeds given to ``seed`` if there are any, and return (n, d) float32."""

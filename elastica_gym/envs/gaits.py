@@ -1,6 +1,7 @@
 """Scripted gaits: travelling waves of couple, played through the animal's own muscles."""
 
 import functools
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,9 @@ if TYPE_CHECKING:
 SEED_COEFFICIENTS = (3.4e-3, 3.3e-3, 4.2e-3, 2.6e-3, 3.6e-3, 3.5e-3)
 """Spline coefficients of the snake's published gait [N m]"""
 SEED_PERIOD = 2.0
-"""Its period [s]; its wave length is the body's"""
+"""Its period [s]"""
+SEED_WAVE = Wave(coefficients=SEED_COEFFICIENTS, period=SEED_PERIOD, wave_number=2.0 * np.pi)
+"""All of it; its wave length is the body's"""
 CRAWL_PERIOD = 1.0
 """Period of the scripted crawl [s]: twice as fast suits these muscles better"""
 PHASES = 64
@@ -43,25 +46,50 @@ def snake_crawl(env: "BatchEnv", angle: Array) -> Array:
 
 
 def _crawl(env: "BatchEnv", period: float, turning: Array) -> Array:
-    wave, turn = _activation_tables(env.body)
+    wave, turn = _seed_tables(env.body)
+    return play_wave(env, wave[None], np.full(env.num_envs, period), turning[:, None] * TURNING * turn)
+
+
+def play_wave(env: "BatchEnv", tables: Array, period: Array, turn: Array | float = 0.0) -> Array:
+    """Return the actions of waves at the time of each environment, (B, 42).
+
+    Parameters
+    ----------
+    env : BatchEnv
+        Of snakes.
+    tables : Array
+        Activations over the period of each wave, (W, PHASES, 42). Environments share them in equal parts: the first
+        B/W environments play the first wave.
+    period : Array
+        [s], (B,)
+    turn : Array or float
+        Activations to add, (B, 42).
+    """
+    which = np.arange(env.num_envs) * len(tables) // env.num_envs
     phase = np.round(env.elapsed * env.control_dt / period * PHASES).astype(np.int64) % PHASES
-    return np.clip(wave[phase] + turning[:, None] * turn, -1.0, 1.0)
+    return np.clip(tables[which, phase] + turn, -1.0, 1.0)
 
 
 @functools.lru_cache(maxsize=4)
-def _activation_tables(body: Body) -> tuple[Array, Array]:
-    """Return the activations of the wave at each phase, (PHASES, 42), and of a bend to the right, (42,)."""
-    matrix = couple_matrix(body.muscles, body.rods[0])
+def _seed_tables(body: Body) -> tuple[Array, Array]:
+    return wave_activations(body, SEED_WAVE), turn_activations(body)
+
+
+def wave_activations(body: Body, wave: Wave) -> Array:
+    """Return the activations that play a wave over its period, (PHASES, 42)."""
     phases = 2.0 * np.pi * np.arange(PHASES) / PHASES
-    wave = activations_for(wave_couples(body.rods[0], phases), matrix)
-    turn = activations_for(np.full((1, matrix.shape[2]), TURNING), matrix)
-    return wave, turn[0]
+    return activations_for(wave_couples(body.rods[0], phases, wave), couple_matrix(body.muscles, body.rods[0]))
 
 
-def wave_couples(rod: Rod, phases: Array) -> Array:
-    """Return the couples of the published gait at given phases of its period [N m], (m, n - 1)."""
-    published = Wave(coefficients=SEED_COEFFICIENTS, period=SEED_PERIOD, wave_number=2.0 * np.pi)
-    sine, cosine = published.profiles(rod.rest_length)
+def turn_activations(body: Body) -> Array:
+    """Return the activations of a constant bend to the right, of 1 N m if the muscles were that strong, (42,)."""
+    matrix = couple_matrix(body.muscles, body.rods[0])
+    return activations_for(np.full((1, matrix.shape[2]), TURNING), matrix)[0] / TURNING
+
+
+def wave_couples(rod: Rod, phases: Array, wave: Wave = SEED_WAVE) -> Array:
+    """Return the couples of a wave at given phases of its period [N m], (m, n - 1)."""
+    sine, cosine = wave.profiles(rod.rest_length)
     # minus: a couple on the element behind and its reverse on the one before are minus the moment inside
     return -(np.sin(phases)[:, None] * sine + np.cos(phases)[:, None] * cosine)
 
@@ -102,12 +130,28 @@ def octopus_crawl(env: "BatchEnv", angle: Array) -> Array:
 
 
 def _stroke(env: "BatchEnv", period: float, table: tuple[tuple[float, ...], ...]) -> Array:
-    offset, sine, cosine = np.array(table)
+    return play_stroke(env, np.full(env.num_envs, period), [np.array(table)] * N_ARMS)
+
+
+def play_stroke(env: "BatchEnv", period: Array, tables: Sequence[Array]) -> Array:
+    """Return the actions of a stroke of the arms at the time of each environment, (B, 42).
+
+    Parameters
+    ----------
+    env : BatchEnv
+        Of octopuses.
+    period : Array
+        [s], (B,)
+    tables : sequence of Array
+        Offset, sine and cosine of the activations ``OCTOPUS_FUNCTIONS`` of each arm, (3, 6), or (B, 3, 6) where
+        environments differ.
+    """
     # the first control step begins at phase zero
-    phase = 2.0 * np.pi * env.elapsed[:, None] * env.control_dt / period
-    level = np.clip(offset + sine * np.sin(phase) + cosine * np.cos(phase), -1.0, 1.0)
+    phase = (2.0 * np.pi * env.elapsed * env.control_dt / period)[:, None]
     actions = np.zeros((env.num_envs, N_ACTIVATIONS))
-    for arm in range(N_ARMS):
+    for arm, table in enumerate(tables):
+        offset, sine, cosine = np.moveaxis(table, -2, 0)
+        level = np.clip(offset + sine * np.sin(phase) + cosine * np.cos(phase), -1.0, 1.0)
         actions[:, np.array(OCTOPUS_FUNCTIONS) + arm * N_FUNCTIONS] = level
     return actions
 

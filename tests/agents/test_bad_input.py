@@ -70,7 +70,7 @@ def test_the_snakes_gait_is_not_the_octopuss():
 
 def test_unknown_policy():
     assert "'scriptd'; did you mean 'scripted'" in refused("agents.evaluate", "--policy", "scriptd", "--env", FORWARD)
-    assert "either --run DIR or --policy" in refused("agents.evaluate", "--env", FORWARD)
+    assert "either --run DIR, --pretrained NAME or --policy" in refused("agents.evaluate", "--env", FORWARD)
 
 
 def test_missing_or_old_packages(monkeypatch):

@@ -1,0 +1,94 @@
+"""Search a gait by CMA-ES: ``python -m agents.search --env elastica_gym/SnakeForward-v0``."""
+
+import dataclasses
+import time
+from pathlib import Path
+from typing import Any, Literal
+
+from agents.checks import BadInputError, choose, environment_ids, fail, make_folder, require_extra, run_command
+from agents.run_files import GAIT, SEARCH
+
+
+@dataclasses.dataclass
+class SearchArguments:
+    """Search the parameters of a gait by the covariance matrix adaptation evolution strategy (CMA-ES).
+
+    On SnakeForward these are the seven of the snake's published gait: six coefficients of a spline and the wave length.
+    Every candidate is an environment of one batch, and all of a generation have the same starts. What the search leaves
+    behind is in runs/<id>/search-<seed>-<time>/.
+    """
+
+    env: str = "elastica_gym/SnakeForward-v0"
+    """Environment id."""
+    gait: Literal["wave", "steered_wave", "stroke"] | None = None
+    """The family of gaits: the snake's published wave; one that also has a period and bends towards the goal; or the
+    octopus's stroke. By default the wave on SnakeForward, and on the others what can reach a goal."""
+    seed: int = 0
+    """Seed of the search; its starts have the seeds seed, seed + 1, ..."""
+    evaluations: int | None = None
+    """Candidates to evaluate, over all restarts; by default 6,000, or no limit if minutes are given."""
+    minutes: float | None = None
+    """Wall-clock budget."""
+    restarts: int = 3
+    """How often the search begins anew, from other gaits; each has an equal part of the budget."""
+    population: int = 20
+    """Candidates in a generation."""
+    threads: int = 2
+    """Threads for the physics; results do not depend on them."""
+    evaluation_episodes: int = 20
+    """Episodes on which the best of the candidates, and the best in the end, are chosen."""
+    evaluation_seed: int = 1_000_000
+    """Seed of the first of them."""
+    out: Path = Path("runs")
+    """Folder of all runs."""
+    folder: Path | None = None
+    """Folder of this search, instead of one in `out` named by id, seed and time."""
+
+
+LOWEST = {"seed": 0, "evaluations": 1, "minutes": 0.001, "restarts": 0, "population": 4, "threads": 1,
+          "evaluation_episodes": 1, "evaluation_seed": 0}  # fmt: skip
+DEFAULT_EVALUATIONS = 6000
+
+
+def main() -> None:
+    """Run the command line."""
+    require_extra("train")
+    import tyro
+
+    arguments = tyro.cli(SearchArguments)
+    folder, config = _started(arguments)
+    # Stable-Baselines3 takes seconds to import: not before the arguments are known to be good
+    import yaml
+
+    from agents.cmaes import Search
+
+    search = Search(folder, config)
+    (folder / "search.yml").write_text(yaml.safe_dump(config, sort_keys=False))
+    print(f"Searching {search.gait.name}, {len(search.gait.parameters)} numbers, on {config['env']}, into {folder}")
+    try:
+        search.run()
+    except KeyboardInterrupt:
+        kept = folder / GAIT
+        fail(f"interrupted. The best gait so far is in {kept}" if kept.exists() else "interrupted", status=130)
+    print(f"Finished. gait.yml, search.csv and search.png are in {folder}")
+    print(f"Evaluate it with: python -m agents.evaluate --policy {folder / GAIT}")
+
+
+def _started(arguments: SearchArguments) -> tuple[Path, dict[str, Any]]:
+    """Check the arguments and make the folder; return that and what goes into its search.yml."""
+    choose("environment", arguments.env, environment_ids())
+    config = {key: value for key, value in dataclasses.asdict(arguments).items() if key not in ("out", "folder")}
+    if arguments.evaluations is arguments.minutes is None:
+        config["evaluations"] = DEFAULT_EVALUATIONS
+    for key, bound in LOWEST.items():
+        if config[key] is not None and config[key] < bound:
+            raise BadInputError(f"{key} must be at least {bound}, got {config[key]}")
+    name = f"search-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
+    folder = arguments.folder or arguments.out / arguments.env.rpartition("/")[2] / name
+    if (folder / SEARCH).exists():
+        raise BadInputError(f"The folder {folder} has a search already: use another.")
+    return make_folder(folder), config
+
+
+if __name__ == "__main__":
+    run_command(main)
