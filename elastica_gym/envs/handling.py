@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..bodies.grip import TOUCH, arm_elements, grip
-from ..cosserat.model import Array, State
+from ..bodies.grip import arm_elements, grip
+from ..cosserat.model import Array, Index, State
 from .task import Mask, Situation, in_heading_frame, way_to_goal
 
 WRAPPED = np.radians(200.0)
@@ -84,7 +84,7 @@ def follow(situation: Situation, state: State) -> Array:
     keeps = (old.grabbed == 1.0) & (slack * s.control_dt <= SLACK_TIME + 1e-9)
     grabbed = np.where(begins, span >= KEPT, grabs | keeps)
     base_x, base_z = held.base[:, 0], held.base[:, 2]
-    carried = (s.pose.gaps[:, 0] <= TOUCH) & (held.tilt <= UPRIGHT) & ~begins
+    carried = held.touching.any(axis=1) & (held.tilt <= UPRIGHT) & ~begins
     return np.stack(Handling(
         reach=_reach(held.gaps, arm_elements(s.body)), span=span, first=first, second=second, slack=slack,
         grabbed=grabbed.astype(np.float64), base_x=base_x, base_z=base_z, tilt=held.tilt,
@@ -95,7 +95,7 @@ def follow(situation: Situation, state: State) -> Array:
     ), axis=1)  # fmt: skip
 
 
-def _reach(gaps: Array, arms: Array) -> Array:
+def _reach(gaps: Array, arms: Index) -> Array:
     """Return the least gap of the half of either arm that is next to the head, 0 where it touches [m], (B,)."""
     (tip, base), (other_base, other_tip) = arms
     inner = gaps[:, (tip + base) // 2 : base].min(axis=1)
