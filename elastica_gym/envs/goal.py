@@ -130,7 +130,7 @@ def _parts(flat: NDArray[np.float32]) -> Parts:
     }
 
 
-def _space(flat: Box) -> Dict:
+def _space(flat: Any) -> Dict:
     low, high = _parts(flat.low), _parts(flat.high)
     return Dict({name: Box(low[name], high[name], dtype=np.float32) for name in low})
 
@@ -147,12 +147,12 @@ class GoalBatchEnv(BatchEnv):
         self.single_observation_space = _space(self.single_observation_space)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
 
-    def reset(self, *, seed=None, options=None):  # type: ignore[no-untyped-def, override]
+    def reset(self, *, seed=None, options=None):
         """Start new episodes; see `BatchEnv.reset`."""
         observations, info = super().reset(seed=seed, options=options)
         return _parts(observations), info
 
-    def step(self, actions: Array):  # type: ignore[no-untyped-def, override]
+    def step(self, actions: Array):
         """Advance by one control step; see `BatchEnv.step`."""
         observations, *rest, info = super().step(actions)
         if "final_obs" in info:
@@ -173,12 +173,12 @@ class GoalEnv(SingleEnv):
         super().__init__(task, **kwargs)
         self.observation_space = _space(self.batch.single_observation_space)
 
-    def reset(self, *, seed=None, options=None):  # type: ignore[no-untyped-def, override]
+    def reset(self, *, seed=None, options=None):
         """Start a new episode; see `BatchEnv.reset`."""
         observation, info = super().reset(seed=seed, options=options)
         return _parts(observation), info
 
-    def step(self, action: Array):  # type: ignore[no-untyped-def, override]
+    def step(self, action: Array):
         """Advance by one control step; see `BatchEnv.step`."""
         observation, *rest = super().step(action)
         return _parts(observation), *rest

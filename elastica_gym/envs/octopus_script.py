@@ -120,7 +120,7 @@ def walk(env: "BatchEnv", bearing: Array) -> Array:
 
 def turn(env: "BatchEnv", arm: Index) -> Array:
     """Return the actions of a turn that brings an arm, which rests, to the right, (B, 42)."""
-    return _play(env, arm.astype(np.float64), 1.0 - arm)
+    return _play(env, np.where(arm == 1, 1.0, 0.0), np.where(arm == 1, 0.0, 1.0))
 
 
 def _play(env: "BatchEnv", first: Array, second: Array) -> Array:
