@@ -52,7 +52,7 @@ SIM_DT = 1.6e-4
 
 OBJECT_LENGTH, OBJECT_RADIUS, OBJECT_MASS = 0.6, 0.05, 4.0
 OBJECT_FRICTION = 0.4
-SKIN = Contact(stiffness=4e4, damping=20.0, friction=OBJECT_FRICTION, slip_damping=25.0)
+SKIN = Contact(stiffness=6e4, damping=20.0, friction=OBJECT_FRICTION, slip_damping=25.0)
 """How arms and head touch the object, each other and themselves"""
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from elastica_gym.bodies import octopus
 from elastica_gym.bodies.body import feel, make_pose
-from elastica_gym.bodies.octopus import HEAD_RADIUS, MIDDLE
+from elastica_gym.bodies.octopus import HEAD, HEAD_RADIUS, MIDDLE
 from elastica_gym.cosserat import advance, at_rest, build_model
 from elastica_gym.cosserat.kernels.contact import overlap
 
@@ -154,6 +154,53 @@ def test_nothing_goes_through_anything(body, scene, seed):
             body_touched = max(body_touched, state.body_touch[0].max())
     assert rod_touched > 0.0
     assert body_touched > 0.0
+
+
+def sides(first, second):
+    """Return activations that bend the arms at their base, (42,)."""
+    activations = np.zeros(42)
+    activations[[0, 1, 3, 4]], activations[[7, 8, 10, 11]] = first, second
+    return activations
+
+
+def part_of(body, slot):
+    """Return which part of the body an element is of."""
+    k = slot - int(body.model.first_slot[0])
+    return "head" if HEAD[0] <= k < HEAD[1] else "first" if k < HEAD[0] else "second"
+
+
+def overlaps(body, state):
+    """Return how deep parts of the body are in each other, by the names of both [m]."""
+    x, radius, found = state.x[0], state.radius[0], {}
+    for pair in state.pairs[0, : state.n_pairs[0]]:
+        low, high = divmod(int(pair), state.x.shape[2])
+        if state.rod_touch[0, low] > 0.0 and state.rod_touch[0, high] > 0.0:
+            a, b, c, d = (tuple(x[:, k]) for k in (low, low + 1, high, high + 1))
+            deep = depth(a, tuple(np.subtract(b, a)), radius[low], c, tuple(np.subtract(d, c)), radius[high])
+            both = frozenset((part_of(body, low), part_of(body, high)))
+            found[both] = max(found.get(both, 0.0), deep)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("activations", "struck"),
+    [
+        pytest.param(-all_of(0, 1), {"second", "head"}, id="head"),
+        pytest.param(all_of(0, 1), {"second"}, id="itself"),
+        pytest.param(-all_of(0, 0) - all_of(0, 1), {"first", "second"}, id="other arm"),
+        pytest.param(sides(-1.0, -1.0), {"first", "second"}, id="other arm, swung from the base"),
+    ],
+)  # fmt: skip
+def test_an_arm_at_full_strength_stops_at(body, scene, activations, struck):
+    state, control = scene
+    state.body_x[0, 0, [0, 2]] = 3.0
+    deepest, touched = 0.0, 0.0
+    for _ in play(body, state, control, activations, 0.8, parts=62):
+        found = overlaps(body, state)
+        deepest = max([deepest, *found.values(), -ground_clearance(body, state)])
+        touched = max(touched, found.get(frozenset(struck), 0.0))
+    assert touched > 2e-4
+    assert deepest < 5e-3
 
 
 def test_forty_microseconds(body, scene):

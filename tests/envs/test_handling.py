@@ -1,0 +1,85 @@
+"""What tasks with an object follow, and that what they reward cannot be had by going to and fro."""
+
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+from elastica_gym.envs.handling import FEWEST, KEPT, WRAPPED, Handling, now
+
+from .conftest import random_actions
+
+RETURN, GRAB, MOVE, FETCH = (f"elastica_gym/Octopus{name}-v0" for name in ("Return", "Grab", "Move", "Fetch"))
+
+
+def test_what_is_held_at_the_start_is_wrapped_and_stays_so(make_vec):
+    """By either arm, in whatever direction it is turned."""
+    env = make_vec(RETURN, 12, autoreset_mode=AutoresetMode.DISABLED)
+    env.reset(seed=0)
+    levels = env.levels.copy()
+    assert set(levels[:, [0, 7]].argmax(axis=1)) == {0, 1}
+    assert (now(env.situation()).span > WRAPPED).all()
+    for _ in range(10):
+        _, _, terminated, _, _ = env.step(levels)
+    held = now(env.situation())
+    assert not terminated.any() and (held.span > WRAPPED).all() and (held.grabbed == 1.0).all()
+    assert np.degrees(held.tilt).max() < 10.0
+
+
+def test_an_arm_that_lets_go_ends_the_way_home_and_costs(make_vec):
+    env = make_vec(RETURN, 2, duration=2.0, autoreset_mode=AutoresetMode.DISABLED)
+    env.reset(seed=0)
+    steps = 0
+    while steps < 40:
+        _, reward, terminated, _, info = env.step(np.zeros((2, 42)))
+        steps += 1
+        if terminated.all():
+            break
+    assert info["termination_reason"].tolist() == ["dropped"] * 2 and (reward < -10.0).all()
+    # never at once: it may hold less for 0.2 s
+    assert steps >= 5
+
+
+def test_the_object_is_grabbed_when_it_has_been_wrapped_for_half_a_second(make_vec):
+    env, held = (make_vec(task, 6, duration=2.0, autoreset_mode=AutoresetMode.DISABLED) for task in (GRAB, RETURN))
+    held.reset(seed=0)
+    env.reset(seed=0)
+    for mine, other in zip(env.state, held.state, strict=True):
+        mine[...] = other
+    for step in range(1, 12):
+        _, _, terminated, _, info = env.step(held.levels)
+        # wrapped at the ends of steps 1 to 11, which are half a second apart
+        assert info["is_success"].tolist() == terminated.tolist() == [step == 11] * 6
+    assert (info["reward_success"] == 10.0).all() and (info["reward_early"] > 7.0).all()
+
+
+def test_moving_counts_only_while_touched(make_vec):
+    """Of two octopuses that are carried off by 2 cm, objects and all, one holds its object."""
+    env = make_vec(RETURN, 2, autoreset_mode=AutoresetMode.DISABLED)
+    env.reset(seed=0)
+    env.state.body_x[1, 0, 0] += 3.0
+    env.state.x[:, 2] += 0.02
+    env.state.body_x[:, 0, 2] += 0.02
+    # so short a step moves nothing
+    env.n_substeps, env.sim_dt = 1, 1e-9
+    env.step(env.levels.copy())
+    after = now(env.situation())
+    np.testing.assert_allclose(after.moved_z, [0.02, 0.0], atol=1e-6)
+    np.testing.assert_allclose(after.moved_x, 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("task", [MOVE, GRAB, RETURN, FETCH])
+def test_progress_is_all_numbers_and_goes_with_the_state(make_vec, task):
+    env = make_vec(task, 3)
+    env.reset(seed=0)
+    for action in random_actions(0, 5, 3):
+        env.step(action)
+    assert env.progress.shape == (3, len(Handling._fields)) and np.isfinite(env.progress).all()
+    saved, kept = env.get_state(), env.progress.copy()
+    env.reset(seed=1)
+    env.set_state(saved)
+    np.testing.assert_array_equal(env.progress, kept)
+
+
+def test_the_bounds_are_those_of_the_hackathon():
+    np.testing.assert_allclose(np.degrees([WRAPPED, KEPT]), [200.0, 150.0])
+    assert FEWEST == 5
