@@ -10,7 +10,8 @@ from tqdm import tqdm
 from agents.checks import BadInputError, choose, environment_ids, missing_extra
 from agents.policy_process import PolicyError, PolicyProcess
 from agents.scoring import GENERAL, GOALS, POINTS, Mask, goals_held, score
-from agents.trials import Sampler, run_trials, target_seeds
+from agents.seeds import target_seeds
+from agents.trials import Sampler, run_trials
 
 INITIAL_STATES = 5
 """Episodes on the default target"""

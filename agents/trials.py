@@ -21,17 +21,9 @@ SAMPLE_TIME = 0.01
 """Most time from one sample to the next [s]"""
 STEPS_BETWEEN_LOOKS = 20
 """Control steps after which it is seen whether there is anything left to do"""
-TEST_SEEDS = 1 << 63
-"""Seeds of test targets have this bit; training and its evaluations count up from 0 and from a million"""
 
 Actor = Callable[[np.ndarray, tuple[int, ...]], np.ndarray]
 """Observations (n, d) and the shape of the actions in, actions out"""
-
-
-def target_seeds(target_seed: int, stream: int, n: int) -> list[int]:
-    """Return the seeds of n test episodes, which differ between streams."""
-    drawn = np.random.SeedSequence([target_seed, stream]).generate_state(n, np.uint64)
-    return [TEST_SEEDS | int(each) for each in drawn]
 
 
 class Sampler:
@@ -105,7 +97,7 @@ class Sampler:
         x, mass = state.x[:n, plane], body.model.mass
         hold = grip(body, State._make(field[:n] for field in state))
         seen: tuple[Any, ...] = (
-            ~self.is_over[going], x[..., body.senses.head], x @ mass / mass.sum(), hold.head_gap,
+            ~self.is_over[going], x[..., body.senses.head], (x * mass).sum(axis=2) / mass.sum(), hold.head_gap,
             hold.touching.any(axis=1), hold.base[:, plane], hold.tilt, hold.spans, hold.counts,
         )  # fmt: skip
         self._times.append(float(state.time[:n].max()))
