@@ -4,9 +4,19 @@ Episode i of a batch, and of an evaluation, begins with the generator of seed s 
 in training go on with the same generator. So what begins in one of these ranges stays in it.
 """
 
+import numpy as np
+
 TRAINING = range(0, 1_000_000)
 """Of environments that are trained in"""
 VALIDATION = range(1_000_000, 2_000_000)
 """Of evaluations during training, by which configurations and checkpoints may be chosen"""
 TEST = range(2_000_000, 3_000_000)
 """Of evaluations whose numbers are published, by which nothing is chosen"""
+SCORED = 1 << 63
+"""The bit that all seeds have with which `scripts/score.py` draws its targets"""
+
+
+def target_seeds(target_seed: int, stream: int, n: int) -> list[int]:
+    """Return the seeds of the n scored episodes of a target seed, which differ between streams."""
+    drawn = np.random.SeedSequence([target_seed, stream]).generate_state(n, np.uint64)
+    return [SCORED | int(each) for each in drawn]
