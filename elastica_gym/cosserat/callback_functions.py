@@ -60,7 +60,7 @@ class ExportCallBack(CallBackBaseClass):
     directory : str
         Where to write; made if it is not there. Without it, ``path`` (or ``filename``) holds both.
     method : str
-        One of ``AVAILABLE_METHOD``: pickle, npz, or pickle to a temporary file.
+        One of ``AVAILABLE_METHOD``: pickle, npz, or pickle to a temporary folder.
     initial_file_count : int
         Number of the first file.
     file_save_interval : int
@@ -93,10 +93,11 @@ class ExportCallBack(CallBackBaseClass):
                 raise ValueError(f"{name} must be at least 1, not {value}")
         self.step_skip, self.file_save_interval, self.method = step_skip, interval, method
         self.file_count, self._first = initial_file_count, initial_file_count
+        if method == "tempfile":
+            directory, place = tempfile.mkdtemp(), Path(place).name
         self._stem = Path(directory, place) if directory is not None else Path(place)
         self._stem.parent.mkdir(parents=True, exist_ok=True)
         self._extension = "npz" if method == "npz" else "pkl"
-        self._temporary = Path(tempfile.mkstemp(suffix=".pkl")[1]) if method == "tempfile" else None
         self.buffer: dict[str, list] = defaultdict(list)
         self.buffer_size = 0
         self._saved_at = 0
@@ -119,8 +120,6 @@ class ExportCallBack(CallBackBaseClass):
             self._dump()
 
     def _path(self, number: int) -> Path:
-        if self._temporary is not None:
-            return self._temporary
         return self._stem.with_name(f"{self._stem.name}_{number:02d}.{self._extension}")
 
     def _dump(self) -> None:

@@ -77,6 +77,8 @@ class RigidBodyBase:
     def _set_up(self, position: Array, directors: Array, inertia: Array) -> None:
         self._fields: dict[str, Array] = {name: np.zeros((3, 1)) for name in (
             "velocity_collection", "omega_collection", "external_forces", "external_torques")}  # fmt: skip
+        # where the search for friction with planes starts; a saved state has it too
+        self._fields["plane_contact"] = np.zeros((6, 7))
         self._fields["position_collection"] = np.array(position, dtype=np.float64).reshape(3, 1)
         self._fields["director_collection"] = directors.reshape(3, 3, 1)
         self._fields["mass_second_moment_of_inertia"] = np.diag(inertia)[:, :, None]
