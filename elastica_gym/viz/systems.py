@@ -23,7 +23,17 @@ import numpy as np
 from ..cosserat.model import Array
 from ..cosserat.rigidbody import RigidBodyBase, Sphere
 from ..cosserat.rod.rod_base import RodBase
-from .recording import APPLICATION_ID, BACKGROUND, HEAD, OBJECT, SERIES, _columns, _rerun, _write_whole, rotations_from_z
+from .recording import (
+    APPLICATION_ID,
+    BACKGROUND,
+    HEAD,
+    OBJECT,
+    SERIES,
+    _columns,
+    _rerun,
+    _write_whole,
+    rotations_from_z,
+)
 
 if TYPE_CHECKING:
     import rerun as rr
@@ -79,14 +89,14 @@ class SystemRecorder:
         stream.send_blueprint(_blueprint(self._name))
         stream.send_recording_name(self._name)
         stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
-        times = SimpleNamespace(step=np.array(self._step, dtype=np.int64), sim_time=np.array(self._sim_time))
+        times: Any = SimpleNamespace(step=np.array(self._step, dtype=np.int64), sim_time=np.array(self._sim_time))
         for number, rod in enumerate(self._rods):
             _log_rod(stream, times, number, self._series("nodes", number), self._series("radii", number),
                      rod.ring_rod_flag)  # fmt: skip
         for number, body in enumerate(self._bodies):
             _log_body(stream, times, number, self._series("centre", number), self._series("axis", number), body)
         for kind, values in zip(ENERGIES, np.array(self._energies).T, strict=True):
-            _columns(stream, times, f"energy/{kind}", rr.Scalars.columns(scalars=values))  # type: ignore[arg-type]
+            _columns(stream, times, f"energy/{kind}", rr.Scalars.columns(scalars=values))
         return _write_whole(Path(path), memory.read())
 
     def _series(self, what: str, number: int) -> Array:

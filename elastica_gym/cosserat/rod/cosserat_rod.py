@@ -127,7 +127,8 @@ class CosseratRod(RodBase):
         The documented ``nu`` of 0.2.x, (n,) [kg/(m s)], [kg m/s].
     lengths, tangents, radius, dilatation, dilatation_rate, voronoi_dilatation, sigma, kappa, internal_stress,
     internal_couple, internal_forces, internal_torques, damping_forces, damping_torques : Array
-        What follows from the others, computed when read. Read-only.
+        What follows from the others, computed when read. Until `finalize` what is written to them is lost, from
+        then on they are read-only.
     acceleration_collection, alpha_collection : Array
         Accelerations in the last kick [m/s^2], [rad/s^2]. Read-only.
     """
@@ -160,6 +161,7 @@ class CosseratRod(RodBase):
     ) -> None:  # fmt: skip
         n = directors.shape[2]
         self.n_elems, self.n_nodes, self.ring_rod_flag = n, position.shape[1], is_ring
+        self._is_simulated = False
         edges = _edges(position, is_ring)
         length = np.linalg.norm(edges, axis=0)
         area = np.pi * radius**2
@@ -306,54 +308,55 @@ class CosseratRod(RodBase):
 
     @property
     def lengths(self) -> Array:  # noqa: D102
-        return _frozen(np.linalg.norm(self._edges, axis=0))
+        return self._derived(np.linalg.norm(self._edges, axis=0))
 
     @property
     def tangents(self) -> Array:  # noqa: D102
         edges = self._edges
-        return _frozen(edges / np.linalg.norm(edges, axis=0))
+        return self._derived(edges / np.linalg.norm(edges, axis=0))
 
     @property
     def radius(self) -> Array:  # type: ignore[override]  # noqa: D102
-        return _frozen(np.sqrt(self.volume / (np.pi * self.lengths)))
+        return self._derived(np.sqrt(self.volume / (np.pi * self.lengths)))
 
     @property
     def dilatation(self) -> Array:  # type: ignore[override]  # noqa: D102
-        return _frozen(self.lengths / self.rest_lengths)
+        return self._derived(self.lengths / self.rest_lengths)
 
     @property
     def dilatation_rate(self) -> Array:  # noqa: D102
         rates = _edges(self.velocity_collection, self.ring_rod_flag)
-        return _frozen((self._edges * rates).sum(axis=0) / (self.lengths * self.rest_lengths))
+        return self._derived((self._edges * rates).sum(axis=0) / (self.lengths * self.rest_lengths))
 
     @property
     def voronoi_dilatation(self) -> Array:  # noqa: D102
-        return _frozen(0.5 * np.add(*strain.between(self.lengths, self.ring_rod_flag)) / self.rest_voronoi_lengths)
+        length = 0.5 * np.add(*strain.between(self.lengths, self.ring_rod_flag))
+        return self._derived(length / self.rest_voronoi_lengths)
 
     @property
     def sigma(self) -> Array:  # type: ignore[override]  # noqa: D102
-        return _frozen(strain.shear(self.director_collection, self._edges, self.rest_lengths))
+        return self._derived(strain.shear(self.director_collection, self._edges, self.rest_lengths))
 
     @property
     def kappa(self) -> Array:  # type: ignore[override]  # noqa: D102
-        return _frozen(strain.curvature(self.director_collection, self.rest_voronoi_lengths, self.ring_rod_flag))
+        return self._derived(strain.curvature(self.director_collection, self.rest_voronoi_lengths, self.ring_rod_flag))
 
     @property
     def internal_stress(self) -> Array:  # noqa: D102
-        return _frozen(strain.apply(self.shear_matrix, self.sigma - self.rest_sigma))
+        return self._derived(strain.apply(self.shear_matrix, self.sigma - self.rest_sigma))
 
     @property
     def internal_couple(self) -> Array:  # noqa: D102
-        return _frozen(strain.apply(self.bend_matrix, self.kappa - self.rest_kappa))
+        return self._derived(strain.apply(self.bend_matrix, self.kappa - self.rest_kappa))
 
     @property
     def internal_forces(self) -> Array:  # noqa: D102
         stress = strain.apply_transposed(self.director_collection, self.internal_stress / self.dilatation)
-        return _frozen(strain.difference(stress, self.ring_rod_flag))
+        return self._derived(strain.difference(stress, self.ring_rod_flag))
 
     @property
     def internal_torques(self) -> Array:  # noqa: D102
-        return _frozen(strain.internal_torques(
+        return self._derived(strain.internal_torques(
             directors=self.director_collection, omega=self.omega_collection, edges=self._edges,
             edge_rates=_edges(self.velocity_collection, self.ring_rod_flag), rest_lengths=self.rest_lengths,
             stress=self.internal_stress, kappa=self.kappa, couple=self.internal_couple,
@@ -365,20 +368,20 @@ class CosseratRod(RodBase):
     def damping_forces(self) -> Array:  # noqa: D102
         ends = self.velocity_collection if not self.ring_rod_flag else _closed(self.velocity_collection)
         force = self.dissipation_constant_for_forces * self.lengths * 0.5 * (ends[:, 1:] + ends[:, :-1])
-        return _frozen(strain.quadrature(force, self.ring_rod_flag))
+        return self._derived(strain.quadrature(force, self.ring_rod_flag))
 
     @property
     def damping_torques(self) -> Array:  # noqa: D102
-        return _frozen(self.dissipation_constant_for_torques * self.omega_collection * self.lengths)
+        return self._derived(self.dissipation_constant_for_torques * self.omega_collection * self.lengths)
 
     @property
     def acceleration_collection(self) -> Array:  # noqa: D102
-        return _frozen(self._fields["net_forces"] / self.mass)
+        return self._derived(self._fields["net_forces"] / self.mass)
 
     @property
     def alpha_collection(self) -> Array:  # noqa: D102
         alpha = strain.apply(self.inv_mass_second_moment_of_inertia, self._fields["net_torques"])
-        return _frozen(alpha * self.dilatation)
+        return self._derived(alpha * self.dilatation)
 
     # between the rod and its simulation
 
@@ -413,12 +416,15 @@ class CosseratRod(RodBase):
         for name, target in memory.items():
             target[...] = self._fields[name]
         self._fields = {**self._fields, **memory}
+        self._is_simulated = True
 
+    def _derived(self, values: Array) -> Array:
+        """Mark an array that is computed when it is read as read-only, once the rod is in a simulation.
 
-def _frozen(values: Array) -> Array:
-    """Mark an array as read-only: what is computed when read cannot be changed."""
-    values.flags.writeable = False
-    return values
+        Scripts that shape a rod write to such arrays too, beside those that decide what they are.
+        """
+        values.flags.writeable = not self._is_simulated
+        return values
 
 
 def _closed(values: Array) -> Array:
