@@ -181,7 +181,7 @@ class Simulation:
             (system,) = declaration.systems
             damper = declaration.make(_system=system)
             if isinstance(damper, AnalyticalLinearDamper) and damper.time_step is not None:
-                self._warn_of(damper.time_step)
+                self._warn_of(damper.time_step, [system] if isinstance(system, CosseratRod) else [])
             if is_built_in(damper, "dampen_rates"):
                 damper.lower(builder)
             else:
@@ -264,11 +264,11 @@ class Simulation:
             raise ValueError(f"the time step must be a positive number, not {dt}")
         if not self._is_judged:
             self._is_judged = True
-            self._warn_of(dt)
+            self._warn_of(dt, self.rods)
 
-    def _warn_of(self, dt: float) -> None:
-        """Warn of a time step that is too large, once."""
-        bound = min((stable_time_step(rod) for rod in self.rods), default=math.inf)
+    def _warn_of(self, dt: float, rods: Sequence[CosseratRod]) -> None:
+        """Warn of a time step that is too large for some rods, once."""
+        bound = min((stable_time_step(rod) for rod in rods), default=math.inf)
         if dt > bound and not self._has_warned:
             self._has_warned = True
             warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the stable one of a rod at rest",

@@ -68,8 +68,8 @@ class SystemRecorder:
         self._step.append(step)
         self._sim_time.append(float(time))
         self._moments.append({
-            "nodes": [rod.position_collection.T.copy() for rod in self._rods],  # type: ignore[attr-defined]
-            "radii": [np.array(rod.radius) for rod in self._rods],  # type: ignore[attr-defined]
+            "nodes": [rod.position_collection.T.copy() for rod in self._rods],
+            "radii": [np.array(rod.radius) for rod in self._rods],
             "centre": [body.position_collection[:, 0].copy() for body in self._bodies],
             "axis": [body.director_collection[2, :, 0].copy() for body in self._bodies],
         })  # fmt: skip
