@@ -42,7 +42,9 @@ def rows(lib: Any, n_rods: int, contact: type | None = None) -> tuple[Any, list[
     tuple
         The simulator, not finalized, and the rods.
     """
-    class Simulator(lib.BaseSystemCollection, lib.Forcing, lib.Connections, lib.Damping, lib.Contact):
+    class Simulator(
+        lib.BaseSystemCollection, lib.Constraints, lib.Forcing, lib.Connections, lib.Damping, lib.Contact
+    ):
         pass
 
     simulator, rods, side = Simulator(), [], int(np.ceil(np.sqrt(n_rods)))

@@ -1,6 +1,7 @@
 """Each feature of the documented library beside PyElastica 1.0.0: the same script, run by either."""
 
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -499,3 +500,24 @@ def damped_ring(lib, sim):
 @pytest.mark.parametrize("scene", [ring, damped_ring], ids=["loaded", "joined and damped"])
 def test_ring(scene):
     test_trajectory(scene)
+
+
+class Untouched(ours.NoContact):
+    def __init__(self, k, nu):
+        pass
+
+
+def test_rods_that_are_joined_and_touch(monkeypatch):
+    """The scene of the benchmark, PyElastica's contact corrected."""
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[2] / "scripts"))
+    import many_rods
+
+    ends = []
+    for lib, contact in ((ours, None), (theirs, oracle.PairContact), (ours, Untouched)):
+        sim, rods = many_rods.rows(lib, 4, contact)
+        sim.finalize()
+        many_rods.shake(rods)
+        lib.integrate(lib.PositionVerlet(), sim, 100 * DT, 100, progress_bar=False)
+        ends.append(np.stack([rod.position_collection for rod in rods]))
+    assert np.abs(ends[0] - ends[1]).max() < 1e-9
+    assert np.abs(ends[0] - ends[2]).max() > 1e-5
