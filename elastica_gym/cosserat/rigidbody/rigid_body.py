@@ -51,7 +51,7 @@ class RigidBodyBase:
     inv_mass_second_moment_of_inertia : Array
         Its inverse, (3, 3, 1), computed when read.
     acceleration_collection, alpha_collection : Array
-        Accelerations by the loads of the last kick [m/s^2], [rad/s^2], (3, 1). Read-only.
+        Accelerations by the loads of the last kick [m/s^2], [rad/s^2], (3, 1), computed when read.
     mass, volume, density, length, radius : float
         [kg], [m^3], [kg/m^3], [m], [m]
     """
@@ -75,7 +75,6 @@ class RigidBodyBase:
     mass: float
 
     def _set_up(self, position: Array, directors: Array, inertia: Array) -> None:
-        self._is_simulated = False
         self._fields: dict[str, Array] = {name: np.zeros((3, 1)) for name in (
             "velocity_collection", "omega_collection", "external_forces", "external_torques")}  # fmt: skip
         # where the search for friction with planes starts; a saved state has it too
@@ -86,17 +85,17 @@ class RigidBodyBase:
 
     @property
     def inv_mass_second_moment_of_inertia(self) -> Array:  # noqa: D102
-        return self._derived(np.linalg.inv(self.mass_second_moment_of_inertia[..., 0])[:, :, None])
+        return np.linalg.inv(self.mass_second_moment_of_inertia[..., 0])[:, :, None]
 
     @property
     def acceleration_collection(self) -> Array:  # noqa: D102
-        return self._derived(self.external_forces / self.mass)
+        return self.external_forces / self.mass
 
     @property
     def alpha_collection(self) -> Array:  # noqa: D102
         J, w = self.mass_second_moment_of_inertia[..., 0], self.omega_collection
         turn = np.cross(J @ w, w, axis=0) + self.external_torques
-        return self._derived(np.linalg.solve(J, turn))
+        return np.linalg.solve(J, turn)
 
     def compute_position_center_of_mass(self) -> Array:
         """Return the centre of mass [m], (3,)."""
@@ -137,9 +136,3 @@ class RigidBodyBase:
         for name, target in memory.items():
             target[...] = self._fields[name]
         self._fields = {**self._fields, **memory}
-        self._is_simulated = True
-
-    def _derived(self, values: Array) -> Array:
-        """Mark an array that is computed when it is read as read-only, once the body is in a simulation."""
-        values.flags.writeable = not self._is_simulated
-        return values
