@@ -37,10 +37,17 @@ STRAY = 0.2
 
 
 def is_built_in(feature: Any, *methods: str) -> bool:
-    """Return whether a feature can be lowered: no subclass has overridden what it does."""
-    for cls in type(feature).__mro__:
-        if "lower" in vars(cls):
-            return all(getattr(type(feature), name) is getattr(cls, name) for name in methods)
+    """Return whether a feature can be lowered: no subclass has overridden what it does.
+
+    A user's subclass is called even if it has not: it is there to be changed during a run. Only what exists in
+    the compiled step alone cannot be.
+    """
+    cls = type(feature)
+    if not (cls.__module__.startswith(str(__package__)) or getattr(cls, "IS_COMPILED", False)):
+        return False
+    for each in cls.__mro__:
+        if "lower" in vars(each):
+            return all(getattr(cls, name) is getattr(each, name) for name in methods)
     return False
 
 

@@ -167,6 +167,39 @@ def test_subclass_that_calls_super(cls):
     assert np.abs(expected - found).max() < 1e-13
 
 
+class Pulled(ea.EndpointForces):
+    """Overrides nothing, but lets itself be found."""
+
+    def __init__(self, found, **kwargs):
+        super().__init__(**kwargs)
+        found.append(self)
+
+
+def test_a_subclass_may_be_changed_during_a_run():
+    rod, found = make_rod(), []
+    sim = simulator(rod)
+    sim.add_forcing_to(rod).using(Pulled, found, start_force=np.zeros(3), end_force=np.zeros(3))
+    sim.finalize()
+    integrate(sim, 5)
+    assert not rod.velocity_collection[0].any()
+    found[0].end_force = 0.1 * X
+    integrate(sim, 5, 5 * DT)
+    assert rod.velocity_collection[0, -1] > 0.0
+
+
+class Softer(ea.RodSelfContact):
+    """Overrides nothing, and cannot be called."""
+
+
+def test_a_subclass_of_what_is_compiled_is_what_it_is_derived_from():
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.detect_contact_between(rod, rod).using(Softer, k=1.0, nu=0.0)
+    sim.finalize()
+    integrate(sim, 2)
+    assert sim.simulation.scene.rod_contacts.stiffness.tolist() == [1.0]
+
+
 def test_torques_of_the_advanced_guide():
     rod = make_rod()
     sim = simulator(rod)
