@@ -28,6 +28,9 @@ TARGETS = {50: 35.0, 200: 22.0}
 """How many times PyElastica's speed is demanded of the snake, by number of elements"""
 ARMS_TARGET = 30.0
 """And of two arms about an object"""
+OWN_FORCE_LIMIT = 3.0
+"""What a force of the user's own that does nothing may add to a step of the library [us]"""
+LIBRARY_STEPS_OURS, LIBRARY_STEPS_THEIRS = 200, 10
 THREADS_TARGET = 1.7
 COLD_LIMIT, WARM_LIMIT = 40.0, 3.0
 """Time to the first step, with and without compiling [s]"""
@@ -69,6 +72,8 @@ def main() -> None:
 
     results: dict[str, Any] = {"machine": describe_machine()}
     results["physics"] = [*(measure_snake(n, arguments.pairs) for n in arguments.sizes), measure_arms(arguments.pairs)]
+    results["library"] = [measure_rods(n, arguments.pairs) for n in (4, 36)]
+    results["own_force"] = measure_own_force(arguments.pairs)
     results["environments"] = [measure_environments(each, arguments.pairs) for each in IDS]
     results["start"] = measure_start()
     show(results)
@@ -157,6 +162,86 @@ def measure_arms(n_pairs: int) -> dict[str, Any]:
     pair = oracle.both([rod], ARMS_STEP, corrected=False, cylinders=[held()], **loads)
     return {"scene": "arms and object", "elements": rod.n_elements, **race(*pair, STEPS_THEIRS_ARMS, n_pairs),
             "target": ARMS_TARGET, "agreement": agreement}  # fmt: skip
+
+
+def measure_rods(n_rods: int, n_pairs: int) -> dict[str, Any]:
+    """Time a step of rods of 20 elements, joined and touching, written once and run by both libraries.
+
+    PyElastica's contact is its own in what is timed, and corrected in what is compared (docs/differences.md).
+    """
+    sys.path.insert(0, str(ROOT))
+    import elastica
+    import many_rods
+
+    import elastica_gym.cosserat as library
+
+    agreement = require_same_rods(4)
+    runs = []
+    for lib, n_steps in ((library, LIBRARY_STEPS_OURS), (elastica, LIBRARY_STEPS_THEIRS)):
+        simulator, rods = many_rods.rows(lib, n_rods)
+        simulator.finalize()
+        many_rods.shake(rods)
+        runs.append((lambda lib=lib, simulator=simulator, n_steps=n_steps: lib.integrate(
+            lib.PositionVerlet(), simulator, n_steps * many_rods.DT, n_steps, progress_bar=False), n_steps))
+    for run, _ in runs:
+        run()
+    ours, theirs = [], []
+    for _ in range(n_pairs):
+        slices = [[timed(run) / n_steps for run, n_steps in runs] for _ in range(SLICES)]
+        for column, best in zip((ours, theirs), (min(each) for each in zip(*slices, strict=True)), strict=True):
+            column.append(best)
+    ratios = [b / a for a, b in zip(ours, theirs, strict=True)]
+    return {
+        "scene": "rods, joined and touching", "rods": n_rods, "elements": many_rods.N_ELEMENTS * n_rods,
+        "dt": many_rods.DT, "ours_us": 1e6 * statistics.median(ours), "pyelastica_us": 1e6 * statistics.median(theirs),
+        "ratio": statistics.median(ratios), "ratios": ratios, "target": None, "agreement": agreement,
+        "simulated_seconds_per_second": many_rods.DT / statistics.median(ours),
+    }  # fmt: skip
+
+
+def require_same_rods(n_rods: int, n_steps: int = 100) -> dict[str, float]:
+    """Exit unless both libraries compute the same of rods that are joined and touch."""
+    import elastica
+    import many_rods
+    import numpy as np
+
+    import elastica_gym.cosserat as library
+    from tests.cosserat import oracle
+
+    ends = []
+    for lib, contact in ((library, None), (elastica, oracle.PairContact)):
+        simulator, rods = many_rods.rows(lib, n_rods, contact)
+        simulator.finalize()
+        many_rods.shake(rods)
+        lib.integrate(lib.PositionVerlet(), simulator, n_steps * many_rods.DT, n_steps, progress_bar=False)
+        ends.append(np.stack([rod.position_collection for rod in rods]))
+    distance = float(np.abs(ends[0] - ends[1]).max())
+    if not distance < 1e-9:
+        sys.exit(f"the programs do not agree on {n_rods} rods: {distance:.2g} m after {n_steps} steps (1e-9 allowed)")
+    return {"metres_after_100_steps": distance}
+
+
+def measure_own_force(n_pairs: int) -> dict[str, float]:
+    """Time a step of the library with a force of the user's own that does nothing, and one without."""
+    import many_rods
+
+    import elastica_gym.cosserat as library
+
+    class Nothing(library.NoForces):
+        def apply_forces(self, system: Any, time: float = 0.0) -> None:
+            pass
+
+    runs = []
+    for has_force in (False, True):
+        simulator, rods = many_rods.rows(library, 2)
+        if has_force:
+            simulator.add_forcing_to(rods[0]).using(Nothing)
+        simulator.finalize()
+        runs.append(lambda simulator=simulator: library.integrate(
+            library.PositionVerlet(), simulator, STEPS_OURS * many_rods.DT, STEPS_OURS, progress_bar=False))
+    slices = [[timed(run) / STEPS_OURS for run in runs] for _ in range(SLICES * n_pairs)]
+    without, with_force = (1e6 * min(column) for column in zip(*slices, strict=True))
+    return {"without_us": without, "with_us": with_force, "added_us": with_force - without, "limit_us": OWN_FORCE_LIMIT}
 
 
 def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_pairs: int) -> dict[str, Any]:
@@ -306,7 +391,7 @@ def show(results: dict[str, Any]) -> None:
     physics = Table(title="One step on one thread [μs], beside PyElastica 1.0.0")
     for column in ("scene", "elements", "PyElastica", "here", "ratio", "demanded", "simulated s per s"):
         physics.add_column(column, justify="left" if column == "scene" else "right")
-    for row in results["physics"]:
+    for row in [*results["physics"], *results["library"]]:
         demanded = "" if row["target"] is None else f"{row['target']:g}"
         physics.add_row(row["scene"], f"{row['elements']}", f"{row['pyelastica_us']:.1f}", f"{row['ours_us']:.2f}",
                         f"{row['ratio']:.1f}", demanded, f"{row['simulated_seconds_per_second']:.1f}")  # fmt: skip
@@ -317,7 +402,10 @@ def show(results: dict[str, Any]) -> None:
         environments.add_row(row["id"], f"{row['steps_per_second_one_thread']:,.0f}",
                              f"{row['steps_per_second_two_threads']:,.0f}", f"{row['threads_ratio']:.2f}",
                              f"{row['target']:g}", f"{row['processes_ratio']:.2f}")  # fmt: skip
+    own = results["own_force"]
     console.print(physics, environments)
+    console.print(f"a force of one's own that does nothing adds {own['added_us']:.2f} us to a step of the library "
+                  f"(at most {own['limit_us']:g})", highlight=False)  # fmt: skip
     console.print(describe_start(results["start"]), highlight=False)
 
 

@@ -25,7 +25,7 @@ from .boundary_conditions import (
     OneEndFixedBC,
     OneEndFixedRod,
 )
-from .callback_functions import CallBackBaseClass, ExportCallBack, MyCallBack
+from .callback_functions import CallBackBaseClass, ExportCallBack, MyCallBack, RerunCallBack
 from .contact_forces import (
     CylinderPlaneContact,
     NoContact,
@@ -119,6 +119,7 @@ __all__ = [
     "Plane",
     "PositionVerlet",
     "RayleighDissipation",
+    "RerunCallBack",
     "RigidBodyBase",
     "Rod",
     "RodBase",

@@ -1,5 +1,6 @@
 """Callbacks: what looks at systems while a simulation runs."""
 
+import atexit
 import pickle
 import tempfile
 from collections import defaultdict
@@ -60,7 +61,7 @@ class ExportCallBack(CallBackBaseClass):
     directory : str
         Where to write; made if it is not there. Without it, ``path`` (or ``filename``) holds both.
     method : str
-        One of ``AVAILABLE_METHOD``: pickle, npz, or pickle to a temporary file.
+        One of ``AVAILABLE_METHOD``: pickle, npz, or pickle to a temporary folder.
     initial_file_count : int
         Number of the first file.
     file_save_interval : int
@@ -93,10 +94,11 @@ class ExportCallBack(CallBackBaseClass):
                 raise ValueError(f"{name} must be at least 1, not {value}")
         self.step_skip, self.file_save_interval, self.method = step_skip, interval, method
         self.file_count, self._first = initial_file_count, initial_file_count
+        if method == "tempfile":
+            directory, place = tempfile.mkdtemp(), Path(place).name
         self._stem = Path(directory, place) if directory is not None else Path(place)
         self._stem.parent.mkdir(parents=True, exist_ok=True)
         self._extension = "npz" if method == "npz" else "pkl"
-        self._temporary = Path(tempfile.mkstemp(suffix=".pkl")[1]) if method == "tempfile" else None
         self.buffer: dict[str, list] = defaultdict(list)
         self.buffer_size = 0
         self._saved_at = 0
@@ -119,8 +121,6 @@ class ExportCallBack(CallBackBaseClass):
             self._dump()
 
     def _path(self, number: int) -> Path:
-        if self._temporary is not None:
-            return self._temporary
         return self._stem.with_name(f"{self._stem.name}_{number:02d}.{self._extension}")
 
     def _dump(self) -> None:
@@ -136,6 +136,53 @@ class ExportCallBack(CallBackBaseClass):
         self.file_count += 1
         self.buffer_size = 0
         self.buffer.clear()
+
+
+class RerunCallBack(CallBackBaseClass):
+    """Records rods and rigid bodies for the rerun viewer: ``rerun <path>`` shows them.
+
+    ``simulator.collect_diagnostics(...)``, with dots, records all systems; a rod, or a list of some, these.
+    The file is written by ``simulator.close()``, or else when Python ends.
+
+    Parameters
+    ----------
+    step_skip : int
+        Steps from one moment of the recording to the next.
+    path : str or Path
+        Where to write it; by custom it ends in ``.rrd``.
+
+    Raises
+    ------
+    ImportError
+        If rerun is not installed: says how.
+    """
+
+    def __init__(self, step_skip: int, path: str | Path) -> None:
+        # imported here: the physics does without pictures
+        from ..viz.systems import SystemRecorder
+
+        if step_skip < 1:
+            raise ValueError(f"step_skip must be at least 1, not {step_skip}")
+        self.step_skip, self.path = step_skip, Path(path)
+        self._recorder = SystemRecorder(self.path.stem)
+        self._is_written = True
+
+    def make_callback(self, system: Any, time: float, current_step: int) -> None:
+        """Collect what is now."""
+        if current_step % self.step_skip:
+            return
+        systems = tuple(system.values()) if isinstance(system, dict) else system
+        self._recorder.capture(systems if isinstance(systems, list | tuple) else (systems,), time, current_step)
+        if self._is_written:
+            self._is_written = False
+            atexit.register(self.on_close)
+
+    def on_close(self) -> None:
+        """Write what has been collected so far."""
+        if not self._is_written:
+            self._is_written = True
+            atexit.unregister(self.on_close)
+            print(f"recorded {self._recorder.write(self.path)}")
 
 
 def _append(lists: dict, system: Any, time: float, step: int) -> int:

@@ -42,6 +42,8 @@ class NoContact:
 class _Compiled(NoContact):
     """Contact that exists in the compiled step alone."""
 
+    IS_COMPILED = True
+
     def apply_contact(self, system_one: Any, system_two: Any, time: float = 0.0) -> None:
         """Refuse: there is no other implementation than the compiled one."""
         raise NotImplementedError(

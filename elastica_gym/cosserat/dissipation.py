@@ -8,6 +8,7 @@ import numpy as np
 from .lowering import SceneBuilder
 from .model import Array
 from .rod.description import require_not_negative
+from .rod.rod_base import RodBase
 
 
 class DamperBase(ABC):
@@ -90,7 +91,8 @@ class AnalyticalLinearDamper(DamperBase):
             raise ValueError("time_step is missing; AnalyticalLinearDamper needs it when a subclass calls it")
         node, element, dilating = self._rates()
         system.velocity_collection *= np.exp(-node * self.time_step)
-        system.omega_collection *= np.exp(-(element + dilating * system.dilatation) * self.time_step)
+        dilatation = system.dilatation if isinstance(system, RodBase) else 1.0
+        system.omega_collection *= np.exp(-(element + dilating * dilatation) * self.time_step)
 
     def lower(self, builder: SceneBuilder) -> None:
         """Write rates."""
@@ -101,7 +103,8 @@ class AnalyticalLinearDamper(DamperBase):
 class LaplaceDissipationFilter(DamperBase):
     """Takes the shortest waves out of velocities and angular velocities, and leaves long ones alone.
 
-    What is taken is (-Laplacian/4)^order of them, with zero at the ends (Jeanmart and Winckelmans 2007).
+    What is taken is (-Laplacian/4)^order of them, with zero at the ends of an open rod (Jeanmart and
+    Winckelmans 2007).
 
     Parameters
     ----------
@@ -120,14 +123,13 @@ class LaplaceDissipationFilter(DamperBase):
         for rates in (system.velocity_collection, system.omega_collection):
             term = rates.copy()
             for _ in range(self.filter_order):
-                term[:, 1:-1] = 0.25 * (2.0 * term[:, 1:-1] - term[:, 2:] - term[:, :-2])
-                term[:, 0] = term[:, -1] = 0.0
+                term = 0.25 * (2.0 * term - np.roll(term, 1, axis=1) - np.roll(term, -1, axis=1))
+                if not system.ring_rod_flag:
+                    term[:, 0] = term[:, -1] = 0.0
             rates -= term
 
     def lower(self, builder: SceneBuilder) -> None:
         """Write a filter."""
-        if self.system.ring_rod_flag:
-            raise NotImplementedError("LaplaceDissipationFilter acts on open rods; this one is a ring")
         builder.add_filter(self.system, self.filter_order)
 
 
@@ -161,12 +163,14 @@ class RayleighDissipation(DamperBase):
 
     def lower(self, builder: SceneBuilder) -> None:
         """Write drag."""
+        if not isinstance(self.system, RodBase):
+            raise TypeError(f"RayleighDissipation acts along a rod, not on a {type(self.system).__name__}")
         builder.add_drag(self.system, *self._drag())
 
 
 def _element_mass(rod: Any) -> Array:
     """Return the mass of elements: of nodes, halved between neighbours and whole at the ends [kg], (n,)."""
-    if rod.ring_rod_flag:
+    if rod.ring_rod_flag or not isinstance(rod, RodBase):
         return np.array(rod.mass)
     mass = 0.5 * (rod.mass[1:] + rod.mass[:-1])
     mass[0] += 0.5 * rod.mass[0]

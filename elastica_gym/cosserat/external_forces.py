@@ -233,6 +233,20 @@ class MuscleTorques(NoForces):
                          ramp_time=self.ramp_up_time, sine=sine, cosine=cosine)  # fmt: skip
 
 
+def inplace_addition(external_force_or_torque: Array, force_or_torque: Array) -> None:
+    """Add loads to a system's, (3, n)."""
+    external_force_or_torque += force_or_torque
+
+
+def inplace_subtraction(external_force_or_torque: Array, force_or_torque: Array) -> None:
+    """Take loads from a system's, (3, n)."""
+    external_force_or_torque -= force_or_torque
+
+
+# as it was spelled before 1.0
+inplace_substraction = inplace_subtraction
+
+
 def _shares(system: Any) -> Array:
     """Return the part of a uniform force that each node gets."""
     shares = np.full(system.n_nodes, 1.0 / system.n_elems)

@@ -18,6 +18,8 @@ SURFACE_TOLERANCE = 1e-4
 class _OnPlane(NoForces):
     """What answers to the net force, and so exists in the compiled step alone."""
 
+    IS_COMPILED = True
+
     plane: surroundings.Plane
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:

@@ -147,6 +147,8 @@ class FixedJoint(FreeJoint):
 class _ContactAsJoint(FreeJoint):
     """Contact under the names of 0.2.x, declared by ``connect`` without indices."""
 
+    IS_COMPILED = True
+
     contact: NoContact
 
     def apply_forces(

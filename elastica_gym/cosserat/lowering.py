@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from .assembly import plane_table
 from .kernels.simulate import DENSE, SPARSE, UNLOADED
-from .model import Array, Index, Model, Waves, aligned_zeros
+from .model import ROOM, Array, Index, Model, Waves, aligned_zeros
+from .rod.rod_base import RodBase
 from .scene import (
     BodyContacts,
     Clamps,
@@ -31,13 +32,22 @@ from .scene import (
 from .surroundings import Plane, net_couple
 
 ALWAYS = -np.inf
+STRAY = 0.2
+"""How far an element may move before pairs that may touch are listed anew, in the smallest radius"""
 
 
 def is_built_in(feature: Any, *methods: str) -> bool:
-    """Return whether a feature can be lowered: no subclass has overridden what it does."""
-    for cls in type(feature).__mro__:
-        if "lower" in vars(cls):
-            return all(getattr(type(feature), name) is getattr(cls, name) for name in methods)
+    """Return whether a feature can be lowered: no subclass has overridden what it does.
+
+    A user's subclass is called even if it has not: it is there to be changed during a run. Only what exists in
+    the compiled step alone cannot be.
+    """
+    cls = type(feature)
+    if not (cls.__module__.startswith(str(__package__)) or getattr(cls, "IS_COMPILED", False)):
+        return False
+    for each in cls.__mro__:
+        if "lower" in vars(each):
+            return all(getattr(cls, name) is getattr(each, name) for name in methods)
     return False
 
 
@@ -71,7 +81,7 @@ class SceneBuilder:
         self._joints: list[tuple] = []
         self._number = {id(rod): number for number, rod in enumerate(rods)}
         self._rods = list(rods)
-        self._rod_contacts: dict[tuple[float, float], set[tuple[int, int]]] = {}
+        self._rod_contacts: set[tuple[int, int, float, float]] = set()
         self._body_contacts: list[tuple] = []
         self._body_planes: list[tuple[Plane, int, float]] = []
         self._planes: list[tuple[Plane, _Span]] = []
@@ -79,7 +89,8 @@ class SceneBuilder:
         self._clamps: list[tuple] = []
         self._node_rate, self._element_rate = aligned_zeros((self._slots,)), aligned_zeros((self._slots,))
         self._dilating_rate = aligned_zeros((3, self._slots))
-        self._filters: list[tuple[_Span, int]] = []
+        self._body_rate, self._body_turn_rate = np.zeros(len(bodies)), np.zeros((len(bodies), 3))
+        self._filters: list[tuple[_Span, int, bool]] = []
 
     # where things are
 
@@ -96,11 +107,13 @@ class SceneBuilder:
         return self._first[id(system)] + _index("element", index, system.n_elems)
 
     def nodes(self, system: Any) -> slice:
-        """Return the slots of a system's nodes."""
+        """Return the slots of a rod's nodes."""
+        _require_rod(system)
         return slice(self._first[id(system)], self._first[id(system)] + system.n_nodes)
 
     def elements(self, system: Any) -> slice:
-        """Return the slots of a system's elements."""
+        """Return the slots of a rod's elements."""
+        _require_rod(system)
         return slice(self._first[id(system)], self._first[id(system)] + system.n_elems)
 
     # loads
@@ -210,7 +223,7 @@ class SceneBuilder:
         _require_open(one, "rod")
         _require_open(two, "rod")
         i, j = self._number[id(one)], self._number[id(two)]
-        self._rod_contacts.setdefault((float(stiffness), float(damping)), set()).add((min(i, j), max(i, j)))
+        self._rod_contacts.add((min(i, j), max(i, j), float(stiffness), float(damping)))
 
     def add_body_plane(self, body: Any, plane: Plane, friction: float) -> None:
         """Let a rigid body touch a plane with a coefficient of Coulomb friction."""
@@ -222,6 +235,11 @@ class SceneBuilder:
         self, system: Any, *, node_rate: ArrayLike, element_rate: ArrayLike = 0.0, dilating_rate: ArrayLike = 0.0
     ) -> None:
         """Add exponential decay of velocities [1/s]; `Decay` says what the arguments mean."""
+        if id(system) in self._body:
+            number = self._body[id(system)]
+            self._body_rate[number] += node_rate
+            self._body_turn_rate[number] += element_rate + np.ravel(dilating_rate)
+            return
         self._node_rate[self.nodes(system)] += node_rate
         self._element_rate[self.elements(system)] += element_rate
         self._dilating_rate[:, self.elements(system)] += dilating_rate
@@ -229,7 +247,7 @@ class SceneBuilder:
     def add_filter(self, system: Any, order: int) -> None:
         """Add a filter of the shortest waves."""
         where = self.nodes(system)
-        self._filters.append((_Span(where.start, where.stop), order))
+        self._filters.append((_Span(where.start, where.stop), order, system.ring_rod_flag))
 
     # the tables
 
@@ -274,31 +292,31 @@ class SceneBuilder:
             clamps=_table(Clamps, self._clamps, "i", "", "3", "3", "", "33"),
             decay=Decay(bool(self._node_rate.any() or self._element_rate.any()), bool(self._dilating_rate.any()),
                         self._node_rate, self._element_rate, self._dilating_rate, aligned_zeros((self._slots,)),
-                        aligned_zeros((self._slots,))),
-            filters=Filters(_spans([span for span, _ in self._filters]),
-                            np.array([order for _, order in self._filters], dtype=np.int64)),
+                        aligned_zeros((self._slots,)), bool(self._body_rate.any() or self._body_turn_rate.any()),
+                        self._body_rate, self._body_turn_rate),
+            filters=Filters(_spans([span for span, _, _ in self._filters]),
+                            np.array([order for _, order, _ in self._filters], dtype=np.int64),
+                            np.array([is_closed for _, _, is_closed in self._filters], dtype=np.bool_)),
         )  # fmt: skip
 
     def _rod_contact_table(self) -> RodContacts:
         rod_of = aligned_zeros((self._slots,), np.int64)
         for number, rod in enumerate(self._rods):
             rod_of[self.nodes(rod)] = number
-        groups = list(self._rod_contacts.items())
-        may_touch = np.zeros((len(groups), len(self._rods), len(self._rods)), dtype=np.bool_)
-        order: list[int] = []
-        spans = []
-        for group, (_, pairs) in enumerate(groups):
-            start = len(order)
-            for i, j in pairs:
-                may_touch[group, i, j] = may_touch[group, j, i] = True
-            for number in sorted({each for pair in pairs for each in pair}):
-                where = self.elements(self._rods[number])
-                order.extend(range(where.start, where.stop))
-            spans.append((start, len(order)))
+        pairs = sorted(self._rod_contacts)
+        touching = [self._rods[number] for number in sorted({number for pair in pairs for number in pair[:2]})]
+        spans = [self.elements(rod) for rod in touching]
+        slots = np.array([slot for span in spans for slot in range(span.start, span.stop)], dtype=np.int64)
         return RodContacts(
-            stiffness=np.array([k for (k, _), _ in groups], dtype=np.float64),
-            damping=np.array([nu for (_, nu), _ in groups], dtype=np.float64), rod_of=rod_of, may_touch=may_touch,
-            span=_spans(spans), order=np.array(order, dtype=np.int64),
+            row=np.searchsorted([pair[0] for pair in pairs], np.arange(len(self._rods) + 1)).astype(np.int64),
+            other=np.array([pair[1] for pair in pairs], dtype=np.int64),
+            stiffness=np.array([pair[2] for pair in pairs], dtype=np.float64),
+            damping=np.array([pair[3] for pair in pairs], dtype=np.float64), rod_of=rod_of, elements=slots,
+            stray=STRAY * min((float(rod.radius.min()) for rod in touching), default=1.0),
+            pairs=aligned_zeros((ROOM * slots.size, 3), np.int64), cell=aligned_zeros((slots.size, 3), np.int64),
+            # half as many elements as buckets or fewer, and a power of two
+            bucket=aligned_zeros((2 ** (2 * slots.size).bit_length() + 1,), np.int64),
+            member=aligned_zeros((slots.size,), np.int64), near=aligned_zeros((slots.size,), np.int64),
         )  # fmt: skip
 
     def _stacked(self, rows: Any) -> Array:
@@ -307,6 +325,11 @@ class SceneBuilder:
         for target, row in zip(table, chosen, strict=True):
             target[:] = row
         return table
+
+
+def _require_rod(system: Any) -> None:
+    if not isinstance(system, RodBase):
+        raise TypeError(f"this acts along a rod, not on a {type(system).__name__}")
 
 
 def _require_open(rod: Any, what: str) -> None:

@@ -124,20 +124,32 @@ class BodyContacts(NamedTuple):
 
 
 class RodContacts(NamedTuple):
-    """The G groups of rods that touch in the same way."""
+    """The C pairs of rods that may touch, a rod and itself among them, and which of their E elements are near."""
 
+    row: Index
+    """Where the pairs of a rod with itself and with later ones begin, and their end, (R + 1,) int64"""
+    other: Index
+    """The other rod of each pair, ascending among those of a rod, (C,) int64"""
     stiffness: Array
-    """Restoring force per overlap k [N/m], (G,)"""
+    """Restoring force per overlap k [N/m], (C,)"""
     damping: Array
-    """Damping force per velocity of approach nu [N s/m], (G,)"""
+    """Damping force per velocity of approach nu [N s/m], (C,)"""
     rod_of: Index
     """The rod that a slot belongs to, (L,) int64"""
-    may_touch: NDArray[np.bool_]
-    """Whether two rods touch each other, and on the diagonal themselves, (G, R, R) bool"""
-    span: Index
-    """Which part of ``order`` is a group's, (G, 2) int64"""
-    order: Index
-    """Slots of the elements in the order of a sweep: any order will do, the right one is the fastest; (E,) int64"""
+    elements: Index
+    """Slots of the elements that may touch others, ascending, (E,) int64"""
+    stray: float
+    """How far an element may move before pairs of elements are listed anew [m]"""
+    pairs: Index
+    """Pairs of elements that may touch until one has strayed too far: slots and row, (P, 3) int64"""
+    cell: Index
+    """The cell that each element was in when they were listed, (E, 3) int64"""
+    bucket: Index
+    """Where the elements of each of H buckets of cells begin in ``member``, and their end, (H + 1,) int64"""
+    member: Index
+    """Elements by bucket, as places in ``elements``, (E,) int64"""
+    near: Index
+    """Those near one element, (E,) int64"""
 
 
 class Pins(NamedTuple):
@@ -189,15 +201,23 @@ class Decay(NamedTuple):
     """exp(-rate dt) for nodes, (L,)"""
     element_factor: Array
     """exp(-rate dt) for elements, without the dilating part, (L,)"""
+    is_on_bodies: bool
+    """Whether any rate of bodies is not zero"""
+    body_rate: Array
+    """Of the velocity of bodies [1/s], (B,)"""
+    body_turn_rate: Array
+    """Of their angular velocity [1/s], material frame, (B, 3)"""
 
 
 class Filters(NamedTuple):
     """The F filters of the shortest waves in velocities (Jeanmart and Winckelmans 2007)."""
 
     span: Index
-    """Slots of the rod's nodes, (F, 2) int64"""
+    """Slots of the rod's nodes, those of a ring without the images, (F, 2) int64"""
     order: Index
     """How often the Laplacian is taken, (F,) int64"""
+    is_closed: NDArray[np.bool_]
+    """Whether the rod is a ring, (F,) bool"""
 
 
 class Rings(NamedTuple):

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .assembly import at_rest, build_model, lay_out
+from .dissipation import AnalyticalLinearDamper
 from .kernels.simulate import DENSE, simulate
 from .lowering import SceneBuilder, is_built_in
 from .model import Array
@@ -86,7 +87,7 @@ class Simulation:
         self._hooks = {name: Hook() for name in Hooks._fields}
         self._callbacks: list[tuple[Any, Any, int]] = []
         self._constraints: list[tuple[Any, Any]] = []
-        self._has_warned = False
+        self._has_warned = self._is_judged = False
 
         builder = SceneBuilder(self.model, self.rods, self.bodies)
         self._add_constraints(declared.get("constraints", ()), builder)
@@ -132,6 +133,7 @@ class Simulation:
                 "position_collection": s.body_x[0, b, :, None], "velocity_collection": s.body_v[0, b, :, None],
                 "director_collection": s.body_Q[0, b, :, :, None], "omega_collection": s.body_w[0, b, :, None],
                 "external_forces": s.body_force[0, b, :, None], "external_torques": s.body_torque[0, b, :, None],
+                "plane_contact": s.body_contact[0, b],
             })  # fmt: skip
 
     def _add_constraints(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
@@ -178,6 +180,8 @@ class Simulation:
         for declaration in declared:
             (system,) = declaration.systems
             damper = declaration.make(_system=system)
+            if isinstance(damper, AnalyticalLinearDamper) and damper.time_step is not None:
+                self._warn_of(damper.time_step, [system] if isinstance(system, CosseratRod) else [])
             if is_built_in(damper, "dampen_rates"):
                 damper.lower(builder)
             else:
@@ -258,13 +262,17 @@ class Simulation:
     def _require_time_step(self, dt: float) -> None:
         if not (math.isfinite(dt) and dt > 0.0):
             raise ValueError(f"the time step must be a positive number, not {dt}")
-        if self._has_warned:
-            return
-        self._has_warned = True
-        bound = min((stable_time_step(rod) for rod in self.rods), default=math.inf)
-        if dt > bound:
+        if not self._is_judged:
+            self._is_judged = True
+            self._warn_of(dt, self.rods)
+
+    def _warn_of(self, dt: float, rods: Sequence[CosseratRod]) -> None:
+        """Warn of a time step that is too large for some rods, once."""
+        bound = min((stable_time_step(rod) for rod in rods), default=math.inf)
+        if dt > bound and not self._has_warned:
+            self._has_warned = True
             warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the stable one of a rod at rest",
-                          RuntimeWarning, stacklevel=4)  # fmt: skip
+                          RuntimeWarning, stacklevel=5)  # fmt: skip
 
 
 def _laid(rod: CosseratRod) -> Lowered:

@@ -4,13 +4,19 @@ Contact that docs/differences.md lists as different is corrected, by default: Py
 and forces, a pair at a time, put together as ours are.
 """
 
+import itertools
 from collections.abc import Sequence
 from typing import Any
 
 import elastica as ea
 import numpy as np
-from elastica._contact_functions import _calculate_contact_forces_rod_cylinder, _calculate_contact_forces_rod_rod
-from elastica.contact_utils import _find_min_dist
+from elastica._contact_functions import (
+    _calculate_contact_forces_cylinder_plane,
+    _calculate_contact_forces_rod_cylinder,
+    _calculate_contact_forces_rod_rod,
+    _calculate_contact_forces_rod_sphere,
+)
+from elastica.contact_utils import _find_min_dist, _find_min_dist_cylinder_sphere
 
 from elastica_gym.cosserat import Control, Model, Rod, State, Wave, advance, at_rest, build_model
 from elastica_gym.cosserat.model import Array
@@ -157,6 +163,58 @@ class CylinderContact(ea.RodCylinderContact):
             _load(rod, k, -f, arm)
             body.external_forces[:, 0] += f
             body.external_torques[:, 0] += body.director_collection[:, :, 0] @ np.cross(body_arm, f)
+
+
+class SphereContact(ea.RodSphereContact):
+    """A rod on a sphere."""
+
+    def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
+        rod, ball = system_one, system_two
+        centre, spin = ball.position_collection[:, 0], _spin(ball, 0)
+        for k in range(rod.n_elems):
+            a, e, middle = _element(rod, k)
+            towards = _find_min_dist_cylinder_sphere(a, e, centre)[0]
+            d = np.linalg.norm(towards)
+            g, n = rod.radius[k] + ball.radius - d, towards / d
+            if g <= 0.0:
+                continue
+            point = centre - (ball.radius - 0.5 * g) * n
+            arm, ball_arm = point - middle, point - centre
+            u = _surface_velocity(rod, k, arm) - ball.velocity_collection[:, 0] - np.cross(spin, ball_arm)
+            if self.k * g + self.nu * u @ n <= 0.0:
+                continue
+            # as above
+            moving, force, on_ball = np.repeat(u[:, None], 4, axis=1), np.zeros((3, 4)), np.zeros((3, 1))
+            _calculate_contact_forces_rod_sphere(
+                _three(a), np.repeat(e[:, None], 3, axis=1), centre, np.full(3, rod.radius[k] + ball.radius),
+                np.full(3, rod.lengths[k] + 2.0 * ball.radius), force, on_ball, moving, np.zeros((3, 1)), self.k,
+                self.nu, self.velocity_damping_coefficient, self.friction_coefficient,
+            )  # fmt: skip
+            f = on_ball[:, 0]
+            _load(rod, k, -f, arm)
+            ball.external_forces[:, 0] += f
+            ball.external_torques[:, 0] += ball.director_collection[:, :, 0] @ np.cross(ball_arm, f)
+
+
+class RimContact(ea.CylinderPlaneContact):
+    """A cylinder on a plane, which meets it at three points of either rim: the lowest and 120 degrees from it."""
+
+    def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
+        body, n = system_one, system_two.normal
+        axis, spin = body.director_collection[2, :, 0], _spin(body, 0)
+        down = -n + (n @ axis) * axis
+        down /= np.linalg.norm(down)
+        for end, turn in itertools.product((0.5, -0.5), (0.0, 2.0 * np.pi / 3.0, -2.0 * np.pi / 3.0)):
+            spoke = np.cos(turn) * down + np.sin(turn) * np.cross(axis, down)
+            arm = end * body.length * axis + body.radius * spoke
+            point, force = body.position_collection + arm[:, None], np.zeros((3, 1))
+            velocity = body.velocity_collection + np.cross(spin, arm)[:, None]
+            _calculate_contact_forces_cylinder_plane(
+                system_two.origin, n, 0.0, self.k, self.nu, 0.0, point, velocity, force
+            )
+            if force[:, 0] @ n > 0.0:
+                body.external_forces += force
+                body.external_torques[:, 0] += body.director_collection[:, :, 0] @ np.cross(arm, force[:, 0])
 
 
 class PairContact(ea.RodRodContact):

@@ -1,6 +1,10 @@
 """The documented library as its users meet it: simulators, their own classes, callbacks, restarts, errors."""
 
 import pickle
+import signal
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -163,6 +167,39 @@ def test_subclass_that_calls_super(cls):
     assert np.abs(expected - found).max() < 1e-13
 
 
+class Pulled(ea.EndpointForces):
+    """Overrides nothing, but lets itself be found."""
+
+    def __init__(self, found, **kwargs):
+        super().__init__(**kwargs)
+        found.append(self)
+
+
+def test_a_subclass_may_be_changed_during_a_run():
+    rod, found = make_rod(), []
+    sim = simulator(rod)
+    sim.add_forcing_to(rod).using(Pulled, found, start_force=np.zeros(3), end_force=np.zeros(3))
+    sim.finalize()
+    integrate(sim, 5)
+    assert not rod.velocity_collection[0].any()
+    found[0].end_force = 0.1 * X
+    integrate(sim, 5, 5 * DT)
+    assert rod.velocity_collection[0, -1] > 0.0
+
+
+class Softer(ea.RodSelfContact):
+    """Overrides nothing, and cannot be called."""
+
+
+def test_a_subclass_of_what_is_compiled_is_what_it_is_derived_from():
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.detect_contact_between(rod, rod).using(Softer, k=1.0, nu=0.0)
+    sim.finalize()
+    integrate(sim, 2)
+    assert sim.simulation.scene.rod_contacts.stiffness.tolist() == [1.0]
+
+
 def test_torques_of_the_advanced_guide():
     rod = make_rod()
     sim = simulator(rod)
@@ -255,6 +292,56 @@ def test_export(tmp_path):
     assert pickle.loads((tmp_path / "seed_00.pkl").read_bytes())["step"].size == 13
 
 
+def test_temporary_exports_keep_every_file():
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.collect_diagnostics(rod).using(ea.ExportCallBack, 10, "rod", method="tempfile", file_save_interval=50)
+    sim.finalize()
+    integrate(sim, 120)
+    sim.close()
+    (callback,) = (each for each, _, _ in sim.simulation._callbacks)
+    last = Path(callback.get_last_saved_path())
+    files = sorted(last.parent.iterdir())
+    assert [path.name for path in files] == ["rod_00.pkl", "rod_01.pkl", "rod_02.pkl"]
+    steps = [step for path in files for step in pickle.loads(path.read_bytes())["step"]]
+    assert steps == list(range(0, 121, 10))
+
+
+KILLED = """
+import os, signal, sys
+import numpy as np
+import elastica_gym.cosserat as ea
+
+class Simulator(ea.BaseSystemCollection, ea.CallBacks):
+    pass
+
+class Kill(ea.CallBackBaseClass):
+    every = 10
+
+    def make_callback(self, system, time, current_step):
+        if current_step == 130:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+sim = Simulator()
+sim.append(ea.CosseratRod.straight_rod(12, np.zeros(3), [0, 0, 1], [0, 1, 0], 0.3, 0.01, 1000.0, youngs_modulus=1e5))
+for method in ("npz", "pickle"):
+    sim.collect_diagnostics(sim[0]).using(ea.ExportCallBack, 10, method, sys.argv[1], method, file_save_interval=50)
+sim.collect_diagnostics(sim[0]).using(Kill)
+sim.finalize()
+ea.integrate(ea.PositionVerlet(), sim, 1e-2, 1000, progress_bar=False)
+"""
+
+
+def test_a_kill_loses_what_was_not_yet_written_and_no_more(tmp_path):
+    killed = subprocess.run([sys.executable, "-c", KILLED, tmp_path], check=False)
+    assert killed.returncode == -signal.SIGKILL
+    whole = list(range(0, 101, 10))
+    steps = np.concatenate([np.load(path)["step"] for path in sorted(tmp_path.glob("npz_*.npz"))])
+    assert steps.tolist() == whole
+    steps = [pickle.loads(path.read_bytes())["step"] for path in sorted(tmp_path.glob("pickle_*.pkl"))]
+    assert np.concatenate(steps).tolist() == whole
+
+
 # restarts, and runs cut in pieces
 
 
@@ -284,6 +371,29 @@ def test_the_same_bits_wherever_a_run_is_cut_or_restarted(stepper, tmp_path):
         time = ea.integrate(stepper, sim, part * DT, part, time, progress_bar=False)
     for rod, expected in zip(rods, whole, strict=True):
         assert np.array_equal(rod.position_collection, expected)
+
+
+def test_the_same_bits_of_a_body_that_rubs_on_a_plane(tmp_path):
+    """What friction was when the state was saved is a part of it: the search for what it is now starts there."""
+    def rubbing():
+        body, sim = ea.Cylinder(np.array([0.0, 0.02, 0.0]), X, Y, 0.1, 0.02, 500.0), Simulator()
+        for system in (body, ea.Plane(np.zeros(3), Y)):
+            sim.append(system)
+        sim.add_forcing_to(body).using(ea.GravityForces, np.array([1.0, -9.8, 0.3]))
+        sim.detect_contact_between(body, sim[1]).using(ea.CylinderPlaneContact, k=1e4, nu=10.0,
+                                                       friction_coefficient=0.5)  # fmt: skip
+        sim.finalize()
+        return sim, body
+
+    sim, body = rubbing()
+    integrate(sim, 2000)
+    whole = body.position_collection.copy(), body.omega_collection.copy()
+    sim, body = rubbing()
+    ea.save_state(sim, tmp_path / "saved", integrate(sim, 700))
+    sim, body = rubbing()
+    integrate(sim, 1300, ea.load_state(sim, tmp_path / "saved"))
+    assert np.array_equal(body.position_collection, whole[0])
+    assert np.array_equal(body.omega_collection, whole[1])
 
 
 def test_script_that_steps_by_itself():
@@ -345,11 +455,39 @@ def test_attributes_refuse():
     rod = make_rod()
     with pytest.raises(ValueError, match=r"mass must have shape \(13,\)"):
         rod.mass = np.ones(5)
-    with pytest.raises(ValueError, match="read-only"):
-        rod.kappa[0] = 1.0
     rod.shear_matrix[0, 1, 0] = 1.0
     with pytest.raises(ValueError, match="shear_matrix must be diagonal"):
         simulator(rod).finalize()
+    rod.shear_matrix[0, 1, 0] = 0.0
+    sim = simulator(rod)
+    sim.finalize()
+    rod.shear_matrix[0, 1, 0] = 1.0
+    with pytest.raises(ValueError, match="shear_matrix must be diagonal"):
+        integrate(sim, 1)
+
+
+def test_scripts_that_shape_a_rod_may_write_what_follows_too():
+    """As they must in the original, where it is stored; what counts is position, volume and lengths at rest."""
+    rod = make_rod()
+    lengths = np.linspace(0.02, 0.03, 12)
+    rod.position_collection[2, 1:] = np.cumsum(lengths)
+    rod.rest_lengths[:] = rod.lengths[:] = lengths
+    rod.rest_voronoi_lengths[:] = 0.5 * (lengths[1:] + lengths[:-1])
+    rod.volume[:] = np.pi * 0.01**2 * lengths
+    rod.radius[:] = 0.01
+    rod.kappa[:] = rod.sigma[:] = 0.0
+    sim = simulator(rod)
+    sim.finalize()
+    assert rod.lengths == pytest.approx(lengths)
+    assert rod.radius == pytest.approx(0.01)
+    integrate(sim, 100)
+    assert np.abs(rod.velocity_collection).max() < 1e-9
+    # and environments that reset one
+    for name in ("acceleration_collection", "alpha_collection", "internal_forces", "internal_torques"):
+        getattr(rod, name).fill(0.0)
+    rod.dilatation.fill(2.0)
+    rod.lengths[:] = 1.0
+    assert rod.lengths == pytest.approx(lengths)
 
 
 def test_actuation_by_rest_curvature_during_a_run():
@@ -424,6 +562,92 @@ def test_unstable_time_step_is_warned_of():
     bound = ea.stable_time_step(rod)
     with pytest.warns(RuntimeWarning, match="stable"):
         ea.integrate(ea.PositionVerlet(), sim, 2.0 * bound, 1, progress_bar=False)
+
+
+def test_unstable_time_step_of_a_damper_is_warned_of_at_finalize():
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.dampen(rod).using(ea.AnalyticalLinearDamper, uniform_damping_constant=1.0, time_step=1e-2)
+    with pytest.warns(RuntimeWarning, match="stable"):
+        sim.finalize()
+
+
+def test_a_system_is_in_a_simulator_once():
+    rods = [make_rod() for _ in range(3)]
+    sim = simulator(*rods[:2])
+    with pytest.raises(ValueError, match="already"):
+        sim[0] = rods[1]
+    sim[0] = rods[0]
+    sim.insert(0, rods[2])
+    assert [sim.get_system_index(rod) for rod in rods] == [1, 2, 0]
+    del sim[0]
+    assert [sim.get_system_index(rod) for rod in rods[:2]] == [0, 1]
+    refuses(lambda: sim.get_system_index(rods[2]), "append it first", error=ValueError)
+
+
+def test_muscles_without_ramp_are_at_full_strength_from_the_start():
+    def after_a_step(ramp):
+        rod = make_rod()
+        sim = simulator(rod)
+        sim.add_forcing_to(rod).using(
+            ea.MuscleTorques, base_length=0.3, b_coeff=np.full(6, 1e-3), period=1.0, wave_number=6.0, phase_shift=0.0,
+            direction=Y, rest_lengths=rod.rest_lengths, ramp_up_time=ramp, with_spline=True,
+        )  # fmt: skip
+        sim.finalize()
+        integrate(sim, 1)
+        return rod.omega_collection.copy()
+
+    # time in the middle of the first step is DT/2
+    assert np.abs(after_a_step(0.0)).max() > 0.0
+    assert np.allclose(after_a_step(0.0), 2.0 * after_a_step(DT), rtol=1e-12)
+
+
+def test_dampers_act_on_rigid_bodies():
+    bodies = [ea.Cylinder(np.zeros(3), Z, Y, 0.1, 0.02, 500.0), ea.Sphere(np.zeros(3), 0.05, 500.0)]
+    sim = simulator(*bodies)
+    sim.dampen(bodies[0]).using(ea.AnalyticalLinearDamper, uniform_damping_constant=5.0)
+    sim.dampen(bodies[1]).using(ea.AnalyticalLinearDamper, translational_damping_constant=0.3,
+                                rotational_damping_constant=1e-4)  # fmt: skip
+    sim.finalize()
+    for body in bodies:
+        body.velocity_collection[:] = body.omega_collection[:] = 1.0 * Z[:, None]
+    T = integrate(sim, 500)
+    ball, J = bodies[1], bodies[1].mass_second_moment_of_inertia[2, 2, 0]
+    assert bodies[0].velocity_collection[2, 0] == pytest.approx(np.exp(-5.0 * T), rel=1e-12)
+    assert bodies[0].omega_collection[2, 0] == pytest.approx(np.exp(-5.0 * T), rel=1e-12)
+    assert ball.velocity_collection[2, 0] == pytest.approx(np.exp(-0.3 / ball.mass * T), rel=1e-12)
+    assert ball.omega_collection[2, 0] == pytest.approx(np.exp(-1e-4 / J * T), rel=1e-12)
+
+
+@pytest.mark.parametrize("order", [1, 4])
+def test_filter_of_a_ring_has_no_seam(order):
+    """The shortest wave goes in a step, wherever it begins; a uniform motion stays."""
+    ring = ea.CosseratRod.ring_rod(16, np.zeros(3), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e-6)
+    sim = simulator(ring)
+    sim.dampen(ring).using(ea.LaplaceDissipationFilter, order)
+    sim.finalize()
+    ring.velocity_collection[0] = 1.0 + np.tile([1.0, -1.0], 8)
+    integrate(sim, 1)
+    assert np.abs(ring.velocity_collection[0] - 1.0).max() < 1e-9
+
+
+@pytest.mark.parametrize(("cls", "args"), [(ea.LaplaceDissipationFilter, (3,)), (ea.RayleighDissipation, (1.0,)),
+                                           (ea.SlenderBodyTheory, (1.0,))])  # fmt: skip
+def test_what_acts_along_rods_refuses_bodies(cls, args):
+    body = ea.Sphere(np.zeros(3), 0.05, 500.0)
+    sim = simulator(body)
+    declare = sim.add_forcing_to if issubclass(cls, ea.NoForces) else sim.dampen
+    declare(body).using(cls, *args)
+    refuses(sim.finalize, "rod", "Sphere", error=TypeError)
+
+
+def test_contact_as_a_joint_takes_none_as_indices():
+    rod, body = make_rod(), ea.Cylinder(np.array([-0.05, 0.025, 0.1]), X, Y, 0.1, 0.02, 500.0)
+    sim = simulator(rod, body)
+    sim.connect(rod, body, first_connect_idx=None, second_connect_idx=None).using(ea.ExternalContact, k=100.0, nu=0.1)
+    sim.finalize()
+    integrate(sim, 10)
+    assert body.velocity_collection[1, 0] > 0.0
 
 
 @pytest.mark.parametrize("name", ["FreeRod", "OneEndFixedRod"])

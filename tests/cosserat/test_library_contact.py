@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import elastica_gym.cosserat as ea
+from elastica_gym.cosserat.surroundings import Contact
 
 DT = 2.0**-16
 X, Y, Z = np.eye(3)
@@ -81,6 +82,90 @@ def test_only_declared_pairs_touch():
     run(sim, 50)
     assert rods[1].velocity_collection.any()
     assert not rods[2].velocity_collection.any()
+
+
+def heap(laws):
+    """Return rods that lie across each other, of which those with a law touch, and their simulator."""
+    rng, rods, sim = np.random.default_rng(0), [], Simulator()
+    for _ in range(12):
+        direction = rng.standard_normal(3)
+        rods.append(make_rod(0.05 * rng.standard_normal(3) - 0.1 * direction / np.linalg.norm(direction), direction,
+                             np.cross(direction, X + Y)))  # fmt: skip
+        sim.append(rods[-1])
+    for i, one in enumerate(rods):
+        for two in rods[i + 1 :]:
+            for law in laws(i):
+                sim.detect_contact_between(one, two).using(ea.RodRodContact, **law)
+    sim.finalize()
+    for rod in rods:
+        rod.velocity_collection[:] = 0.5 * rng.standard_normal((3, 11))
+    return sim, rods
+
+
+def nodes_of(rods):
+    return np.stack([rod.position_collection for rod in rods])
+
+
+def advance(sim, n_steps):
+    ea.integrate(ea.PositionVerlet(), sim, n_steps * DT, n_steps, progress_bar=False)
+
+
+def test_a_heap_is_that_of_the_environments():
+    """Which compares each pair of elements in other ways."""
+    law = dict(stiffness=1e3, damping=0.5)
+    sim, rods = heap(lambda _: [dict(k=1e3, nu=0.5)])
+    model, _ = ea.build_model([rod.as_continuum() for rod in rods], rod_contact=Contact(**law)), None
+    state, control = ea.at_rest(model, [rod.as_continuum() for rod in rods])
+    state.v[:] = sim.simulation.state.v
+    assert np.array_equal(state.x, sim.simulation.state.x)
+    before = state.v.copy()
+    ea.advance(model, state, control, 0, 1, DT, 40)
+    advance(sim, 40)
+    assert np.abs(state.v - before).max() > 0.1
+    assert np.abs(state.x - sim.simulation.state.x).max() < 1e-12
+
+
+def test_two_laws_of_a_pair_add_up():
+    one, two = heap(lambda _: [dict(k=1e3, nu=0.0)]), heap(lambda _: [dict(k=6e2, nu=0.0), dict(k=4e2, nu=0.0)])
+    for sim, _ in (one, two):
+        advance(sim, 20)
+    assert np.abs(nodes_of(one[1]) - nodes_of(two[1])).max() < 1e-12
+
+
+@pytest.mark.parametrize("stray", [0.0, 2e-3], ids=["listed at each step", "kept"])
+def test_the_same_bits_however_pairs_are_found(stray):
+    """With and without room for a list, and however long it is kept."""
+    def laws(i):
+        return [dict(k=1e3 + i, nu=0.5)]
+
+    found = []
+    for changes in ({}, {"pairs": np.zeros((0, 3), dtype=np.int64)}, {"stray": stray}):
+        sim, rods = heap(laws)
+        contacts = sim.simulation.scene.rod_contacts._replace(**changes)
+        sim.simulation.scene = sim.simulation.scene._replace(rod_contacts=contacts)
+        advance(sim, 200)
+        found.append(nodes_of(rods))
+    assert np.array_equal(found[0], found[1])
+    assert np.array_equal(found[0], found[2])
+
+
+def test_what_diverged_ends():
+    sim, rods = heap(lambda _: [dict(k=1e3, nu=0.5)])
+    rods[3].position_collection[1, 4] = np.nan
+    rods[7].velocity_collection[0, 2] = 1e300
+    advance(sim, 20)
+    assert np.isnan(rods[3].position_collection).any()
+
+
+def test_only_the_rod_of_a_pair_touches_a_body():
+    rods = [make_rod((0.0, 0.0, 0.0)), make_rod((0.001, 0.0, 0.0))]
+    body, sim = make_cylinder(), Simulator()
+    for system in (*rods, body):
+        sim.append(system)
+    sim.detect_contact_between(rods[1], body).using(ea.RodCylinderContact, k=1e3, nu=0.0)
+    run(sim, 50)
+    assert not rods[0].velocity_collection.any()
+    assert rods[1].velocity_collection.any() and body.velocity_collection.any()
 
 
 def test_rod_touches_itself():

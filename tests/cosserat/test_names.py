@@ -16,13 +16,14 @@ _rotations: _get_rotation_matrix _rotate _inv_rotate _skew_symmetrize _inv_skew_
 _rotations: get_relative_rotation_two_systems
 boundary_conditions: ConstraintBase FreeBC OneEndFixedBC FixedConstraint GeneralConstraint HelicalBucklingBC FreeRod
 boundary_conditions: OneEndFixedRod
-callback_functions: CallBackBaseClass ExportCallBack MyCallBack
+alias: stand_in_for_elastica
+callback_functions: CallBackBaseClass ExportCallBack MyCallBack RerunCallBack
 connections: FixedJoint FreeJoint HingeJoint
 contact_forces: NoContact RodRodContact RodCylinderContact RodSelfContact RodSphereContact RodPlaneContact
 contact_forces: RodPlaneContactWithAnisotropicFriction CylinderPlaneContact
 dissipation: DamperBase AnalyticalLinearDamper LaplaceDissipationFilter RayleighDissipation
 external_forces: NoForces EndpointForces GravityForces UniformForces UniformTorques MuscleTorques
-external_forces: EndpointForcesSinusoidal
+external_forces: EndpointForcesSinusoidal inplace_addition inplace_subtraction inplace_substraction
 interaction: AnisotropicFrictionalPlane InteractionPlane SlenderBodyTheory
 joint: FreeJoint HingeJoint FixedJoint ExternalContact SelfContact BallJoint SphericalJoint ConnectionBase
 modules: BaseSystemCollection CallBacks Connections Constraints Forcing Damping Contact
@@ -39,7 +40,7 @@ rigidbody.cylinder: Cylinder
 rigidbody.rigid_body: RigidBodyBase
 rigidbody.rigid_body_base: RigidBodyBase
 rigidbody.sphere: Sphere
-rod.rod_base: RodBase
+rod: RodBase
 rod.cosserat_rod: CosseratRod
 rod.knot_theory: KnotTheory KnotTheoryCompatibleProtocol compute_twist compute_writhe compute_link
 rod.rod_base: RodBase
@@ -48,6 +49,7 @@ surface.plane: Plane
 timestepper: integrate extend_stepper_interface
 timestepper.symplectic_steppers: PositionVerlet PEFRL
 transformations: inv_skew_symmetrize rotate skew_symmetrize
+typing: RodType RigidBodyType SystemType StaticSystemType SystemCollectionType ConnectionIndex ConstrainingIndex
 utils: isqrt MaxDimension Tolerance
 wrappers: BaseSystemCollection CallBacks Connections Constraints Forcing Damping Contact
 wrappers.base_system: BaseSystemCollection

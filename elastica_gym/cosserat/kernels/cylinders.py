@@ -6,7 +6,7 @@ its ends are domes to them. Planes meet it as it is, at the rims of its flat end
 
 from math import sqrt
 
-from .compiler import FIRST, ONE, apart, inner, stage
+from .compiler import ONE, apart, inner, stage
 from .contact import load, middle, overlap, press, surface_velocity
 from .roots import inverse_sqrt
 from .vectors import add, column, cross, dot, norm, plus, times, to_lab, to_material, vector
@@ -20,12 +20,12 @@ SETTLED = 1e-5
 
 
 @stage
-def clearance(n, x, length, radius, body_radius, body_length, centre, axis, gap):
+def clearance(first, n, x, length, radius, body_radius, body_length, centre, axis, gap):
     """Compute a lower bound of the gap between elements and a cylinder: as if they were balls about their centres."""
     c0, c1, c2 = centre
     a0, a1, a2 = axis
     half = 0.5 * body_length
-    for k in range(FIRST, n):
+    for k in range(first, n):
         j = k + ONE
         d0, d1, d2 = 0.5 * (x[0][k] + x[0][j]) - c0, 0.5 * (x[1][k] + x[1][j]) - c1, 0.5 * (x[2][k] + x[2][j]) - c2
         # to the nearest point of the axis
@@ -40,8 +40,8 @@ def clearance(n, x, length, radius, body_radius, body_length, centre, axis, gap)
 
 
 @apart
-def rods_on_cylinders(n, gap, x, v, Q, w, length, radius, cylinders, bodies, force, torque, touch):
-    """Add the forces between rod elements and cylinders where they overlap, action and reaction.
+def rods_on_cylinders(first, n, gap, x, v, Q, w, length, radius, cylinders, bodies, force, torque, touch):
+    """Add the forces between rod elements, from slot ``first`` to n - 1, and cylinders where they overlap.
 
     Half of the force on an element goes to each of its nodes, and its velocity is their mean. Both
     velocities include the spin, and both get the torque of the force about their centre. Adds the
@@ -53,12 +53,12 @@ def rods_on_cylinders(n, gap, x, v, Q, w, length, radius, cylinders, bodies, for
         centre, axis, body_radius = vector(body_x[b]), vector(body_Q[b, 2]), c.radius[b]
         start, edge = plus(centre, -0.5 * c.length[b], axis), times(c.length[b], axis)
         velocity, spin = vector(body_v[b]), to_lab(body_Q[b], vector(body_w[b]))
-        clearance(n, (x[0], x[1], x[2]), length, radius, body_radius, c.length[b], centre, axis, gap)
-        for k in range(FIRST, n):
+        clearance(first, n, (x[0], x[1], x[2]), length, radius, body_radius, c.length[b], centre, axis, gap)
+        for k in range(first, n):
             if gap[k] < 0.0:
-                first = column(x, k)
-                e = plus(column(x, k + ONE), -1.0, first)
-                g, normal, point = overlap(first, e, radius[k], start, edge, body_radius)
+                a = column(x, k)
+                e = plus(column(x, k + ONE), -1.0, a)
+                g, normal, point = overlap(a, e, radius[k], start, edge, body_radius)
                 if g > 0.0:
                     arm, body_arm = plus(point, -1.0, middle(x, k)), plus(point, -1.0, centre)
                     u = surface_velocity(v, Q, w, k, arm)

@@ -42,6 +42,15 @@ def dilating_decay(n, dt, rate, length, inv_rest_length, w):
 
 
 @apart
+def decay_bodies(dt, rate, turn_rate, v, w):
+    """Multiply velocities of bodies by exp(-rate dt), and each component of their angular velocities by its own."""
+    for b in range(rate.size):
+        for d in range(3):
+            v[b, d] *= exp(-rate[b] * dt)
+            w[b, d] *= exp(-turn_rate[b, d] * dt)
+
+
+@apart
 def smooth(first, last, order, rate, term):
     """Take the shortest waves out of one row of velocities, from slot first to last - 1.
 
@@ -56,5 +65,20 @@ def smooth(first, last, order, rate, term):
             term[k] = 0.25 * (2.0 * here - before - term[k + 1])
             before = here
         term[first] = term[last - 1] = 0.0
+    for k in range(first, last):
+        rate[k] -= term[k]
+
+
+@apart
+def smooth_ring(first, last, order, rate, term):
+    """Take the shortest waves out of one row of velocities of a closed rod, as `smooth` does, but without ends."""
+    for k in range(first, last):
+        term[k] = rate[k]
+    for _ in range(order):
+        before, start = term[last - 1], term[first]
+        for k in range(first, last):
+            here, after = term[k], term[k + 1] if k < last - 1 else start
+            term[k] = 0.25 * (2.0 * here - before - after)
+            before = here
     for k in range(first, last):
         rate[k] -= term[k]

@@ -11,7 +11,7 @@ from ..model import BLOCK, LEAD
 from .bodies import orthonormalise_bodies
 from .compiler import apart, entry, inner
 from .constraints import hold, move
-from .damping import decay, dilating_decay, drag, smooth
+from .damping import decay, decay_bodies, dilating_decay, drag, smooth, smooth_ring
 from .ends import add_to
 from .flow import resist
 from .hooks import call
@@ -128,11 +128,13 @@ def external_loads(model, scene, state, control, hooks, n):
     s = state
     if scene.body_contacts.body.size > 0:
         bodies = s.body_x[0], s.body_v[0], s.body_Q[0], s.body_w[0], s.body_force[0], s.body_torque[0]
-        touch_bodies(n, scene.body_contacts, model.cylinders, s.scratch[0], s.x[0], s.v[0], Q, s.w[0], s.length[0],
+        touch_bodies(scene.body_contacts, model.cylinders, s.scratch[0], s.x[0], s.v[0], Q, s.w[0], s.length[0],
                      s.radius[0], bodies, force, torque)  # fmt: skip
     if scene.rod_contacts.stiffness.size > 0:
-        touch_rods(n, scene.rod_contacts, s.scratch[0], s.x[0], s.v[0], Q, s.w[0], s.length[0], s.radius[0], force,
-                   torque)  # fmt: skip
+        s.n_pairs[0] = touch_rods(
+            n, scene.rod_contacts, s.n_pairs[0], rows(s.listed_x[0]), s.listed_reach[0], s.scratch[0], s.x[0], s.v[0],
+            Q, s.w[0], s.length[0], s.radius[0], force, torque,
+        )  # fmt: skip
     return answer(hooks.loads, time)
 
 
@@ -215,11 +217,17 @@ def damp(model, scene, state, hooks, n, dt):
         decay(n, d.node_factor, d.element_factor, v, w)
     if d.is_dilating:
         dilating_decay(n, dt, rows(d.dilating_rate), state.length[0], model.inv_rest_length, w)
+    if d.is_on_bodies:
+        decay_bodies(dt, d.body_rate, d.body_turn_rate, state.body_v[0], state.body_w[0])
     for j in range(scene.filters.order.size):
         first, last, order = scene.filters.span[j, 0], scene.filters.span[j, 1], scene.filters.order[j]
         for i in range(3):
-            smooth(first, last, order, state.v[0, i], state.scratch[0, 0])
-            smooth(first, last - 1, order, state.w[0, i], state.scratch[0, 0])
+            if scene.filters.is_closed[j]:
+                smooth_ring(first, last, order, state.v[0, i], state.scratch[0, 0])
+                smooth_ring(first, last, order, state.w[0, i], state.scratch[0, 0])
+            else:
+                smooth(first, last, order, state.v[0, i], state.scratch[0, 0])
+                smooth(first, last - 1, order, state.w[0, i], state.scratch[0, 0])
     return answer(hooks.damping, state.time[0])
 
 

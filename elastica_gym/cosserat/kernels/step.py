@@ -6,7 +6,7 @@ import numpy as np
 
 from ..model import BLOCK, Control, Model, State
 from .bodies import drift_bodies, kick_bodies, orthonormalise_bodies, weigh_bodies
-from .compiler import entry, inner
+from .compiler import FIRST, entry, inner
 from .curvature import bending, logarithm, relative_rotation
 from .cylinders import cylinders_on_planes, rods_on_cylinders
 from .dynamics import dynamics
@@ -86,7 +86,7 @@ def contacts(model, state, i, n):
         bodies = s.body_x[i], s.body_v[i], s.body_Q[i], s.body_w[i], s.body_force[i], s.body_torque[i]
         weigh_bodies(m.cylinders.mass, m.gravity, s.body_force[i], s.body_torque[i])
         s.body_touch[i, :] = 0.0
-        rods_on_cylinders(n, s.scratch[i, 0], x, v, Q, w, length, radius, m.cylinders, bodies, s.force[i],
+        rods_on_cylinders(FIRST, n, s.scratch[i, 0], x, v, Q, w, length, radius, m.cylinders, bodies, s.force[i],
                           s.torque[i], s.body_touch[i])  # fmt: skip
     if m.rod_contact.is_on:
         begin, end, reach, last_far = s.scratch[i, 0], s.scratch[i, 1], s.scratch[i, 2], s.scratch[i, 3]

@@ -33,6 +33,8 @@ class BaseSystemCollection(MutableSequence):
     def __init__(self) -> None:
         self.allowed_sys_types: tuple[type, ...] = (CosseratRod, RigidBodyBase, Plane)
         self._systems: list[Any] = []
+        # by the identity of each system: a search through them would make many rods slow to declare
+        self._places: dict[int, int] = {}
         self._declared: dict[str, list[Declaration]] = {}
         self._simulation: Simulation | None = None
         super().__init__()
@@ -48,11 +50,15 @@ class BaseSystemCollection(MutableSequence):
     def __delitem__(self, index: Any) -> None:
         self._require_open("remove a system")
         del self._systems[index]
+        self._find_places()
 
     def __setitem__(self, index: Any, system: Any) -> None:
         self._require_open("replace a system")
         self._require_allowed(system)
+        if self._places.get(id(system), self.get_system_index(index)) != self.get_system_index(index):
+            raise ValueError(f"this {type(system).__name__} is already in the simulator")
         self._systems[index] = system
+        self._find_places()
 
     def insert(self, index: int, system: Any) -> None:
         """Insert a system before ``index``.
@@ -66,9 +72,17 @@ class BaseSystemCollection(MutableSequence):
         """
         self._require_open("add a system")
         self._require_allowed(system)
-        if any(system is each for each in self._systems):
+        if id(system) in self._places:
             raise ValueError(f"this {type(system).__name__} is already in the simulator")
+        is_last = index >= len(self)
         self._systems.insert(index, system)
+        if is_last:
+            self._places[id(system)] = len(self) - 1
+        else:
+            self._find_places()
+
+    def _find_places(self) -> None:
+        self._places = {id(system): place for place, system in enumerate(self._systems)}
 
     def __str__(self) -> str:
         return str(self._systems)
@@ -99,9 +113,8 @@ class BaseSystemCollection(MutableSequence):
             if not -len(self) <= system < len(self):
                 raise IndexError(f"there is no system {system}; the simulator has {len(self)}")
             return int(system) % len(self)
-        for index, each in enumerate(self._systems):
-            if each is system:
-                return index
+        if id(system) in self._places:
+            return self._places[id(system)]
         raise ValueError(f"this {type(system).__name__} is not in the simulator; append it first")
 
     # features

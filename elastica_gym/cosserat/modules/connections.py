@@ -17,7 +17,7 @@ class Connections(_Collection):
     """Lets a simulator connect systems by joints."""
 
     def connect(
-        self, first_rod: Any, second_rod: Any, first_connect_idx: Any = (), second_connect_idx: Any = ()
+        self, first_rod: Any, second_rod: Any, first_connect_idx: Any = None, second_connect_idx: Any = None
     ) -> Declaration:
         """Announce a joint between two systems at two indices; say which by ``using(cls, *args, **kwargs)``.
 
@@ -27,7 +27,8 @@ class Connections(_Collection):
             Rods or rigid bodies.
         first_connect_idx, second_connect_idx : int or sequence of int
             Node and element of each that are connected, counted from the end if negative. Several are
-            passed on as they are to a class of your own, and make as many joints of the built-in ones.
+            passed on as they are to a class of your own, and make as many joints of the built-in ones; none
+            for what connects whole systems.
 
         Raises
         ------
@@ -36,6 +37,9 @@ class Connections(_Collection):
         IndexError
             If there is no such node.
         """
+        first_connect_idx, second_connect_idx = (
+            () if index is None else index for index in (first_connect_idx, second_connect_idx)
+        )
         kinds = [isinstance(each, int | np.integer) for each in (first_connect_idx, second_connect_idx)]
         if kinds[0] != kinds[1]:
             raise TypeError("first_connect_idx and second_connect_idx must be of the same kind, "

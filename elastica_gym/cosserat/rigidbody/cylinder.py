@@ -34,7 +34,7 @@ class Cylinder(RigidBodyBase):
         d3, d1 = _unit("direction", direction), _unit("normal", normal)
         if abs(float(d1 @ d3)) > 1e-8:
             raise ValueError(f"normal must be perpendicular to direction; the cosine between them is {d1 @ d3:.3g}")
-        self.length, self.radius, self.density = float(base_length), float(base_radius), float(density)
+        self.length, self.radius, self.density = (np.float64(each) for each in (base_length, base_radius, density))
         self.volume = np.pi * self.radius**2 * self.length
         self.mass = self.density * self.volume
         across = self.mass * (3.0 * self.radius**2 + self.length**2) / 12.0

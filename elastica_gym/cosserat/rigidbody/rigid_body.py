@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..model import Array
-from ..rod.cosserat_rod import Field, _frozen
+from ..rod.cosserat_rod import Field
 from ..surroundings import Contact
 
 NOWHERE = Contact(stiffness=1.0)
@@ -49,9 +49,9 @@ class RigidBodyBase:
     mass_second_moment_of_inertia : Array
         [kg m^2], diagonal, (3, 3, 1).
     inv_mass_second_moment_of_inertia : Array
-        Its inverse, (3, 3, 1). Read-only.
+        Its inverse, (3, 3, 1), computed when read.
     acceleration_collection, alpha_collection : Array
-        Accelerations by the loads of the last kick [m/s^2], [rad/s^2], (3, 1). Read-only.
+        Accelerations by the loads of the last kick [m/s^2], [rad/s^2], (3, 1), computed when read.
     mass, volume, density, length, radius : float
         [kg], [m^3], [kg/m^3], [m], [m]
     """
@@ -77,23 +77,25 @@ class RigidBodyBase:
     def _set_up(self, position: Array, directors: Array, inertia: Array) -> None:
         self._fields: dict[str, Array] = {name: np.zeros((3, 1)) for name in (
             "velocity_collection", "omega_collection", "external_forces", "external_torques")}  # fmt: skip
+        # where the search for friction with planes starts; a saved state has it too
+        self._fields["plane_contact"] = np.zeros((6, 7))
         self._fields["position_collection"] = np.array(position, dtype=np.float64).reshape(3, 1)
         self._fields["director_collection"] = directors.reshape(3, 3, 1)
         self._fields["mass_second_moment_of_inertia"] = np.diag(inertia)[:, :, None]
 
     @property
     def inv_mass_second_moment_of_inertia(self) -> Array:  # noqa: D102
-        return _frozen(np.linalg.inv(self.mass_second_moment_of_inertia[..., 0])[:, :, None])
+        return np.linalg.inv(self.mass_second_moment_of_inertia[..., 0])[:, :, None]
 
     @property
     def acceleration_collection(self) -> Array:  # noqa: D102
-        return _frozen(self.external_forces / self.mass)
+        return self.external_forces / self.mass
 
     @property
     def alpha_collection(self) -> Array:  # noqa: D102
         J, w = self.mass_second_moment_of_inertia[..., 0], self.omega_collection
         turn = np.cross(J @ w, w, axis=0) + self.external_torques
-        return _frozen(np.linalg.solve(J, turn))
+        return np.linalg.solve(J, turn)
 
     def compute_position_center_of_mass(self) -> Array:
         """Return the centre of mass [m], (3,)."""

@@ -24,7 +24,7 @@ class Sphere(RigidBodyBase):
     def __init__(self, center: ArrayLike, base_radius: float, density: float) -> None:
         require_positive("base_radius", base_radius)
         require_positive("density", density)
-        self.radius, self.density = float(base_radius), float(density)
+        self.radius, self.density = np.float64(base_radius), np.float64(density)
         self.length = 2.0 * self.radius
         self.volume = 4.0 / 3.0 * np.pi * self.radius**3
         self.mass = self.density * self.volume

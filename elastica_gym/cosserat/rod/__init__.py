@@ -9,8 +9,9 @@ from .description import (
     require_stable,
     stable_time_step,
 )
+from .rod_base import RodBase
 
 __all__ = [
-    "Continuum", "Rod", "require_finite", "require_not_negative", "require_positive", "require_stable",
+    "Continuum", "Rod", "RodBase", "require_finite", "require_not_negative", "require_positive", "require_stable",
     "stable_time_step",
 ]  # fmt: skip

@@ -127,9 +127,10 @@ class CosseratRod(RodBase):
         The documented ``nu`` of 0.2.x, (n,) [kg/(m s)], [kg m/s].
     lengths, tangents, radius, dilatation, dilatation_rate, voronoi_dilatation, sigma, kappa, internal_stress,
     internal_couple, internal_forces, internal_torques, damping_forces, damping_torques : Array
-        What follows from the others, computed when read. Read-only.
+        What follows from the others, computed when read. What is written to them is lost, as it is in PyElastica
+        at the next step.
     acceleration_collection, alpha_collection : Array
-        Accelerations in the last kick [m/s^2], [rad/s^2]. Read-only.
+        Accelerations in the last kick [m/s^2], [rad/s^2], computed when read.
     """
 
     REQUISITE_MODULES: ClassVar[list[type]] = []
@@ -306,79 +307,80 @@ class CosseratRod(RodBase):
 
     @property
     def lengths(self) -> Array:  # noqa: D102
-        return _frozen(np.linalg.norm(self._edges, axis=0))
+        return np.linalg.norm(self._edges, axis=0)
 
     @property
     def tangents(self) -> Array:  # noqa: D102
         edges = self._edges
-        return _frozen(edges / np.linalg.norm(edges, axis=0))
+        return edges / np.linalg.norm(edges, axis=0)
 
     @property
     def radius(self) -> Array:  # type: ignore[override]  # noqa: D102
-        return _frozen(np.sqrt(self.volume / (np.pi * self.lengths)))
+        return np.sqrt(self.volume / (np.pi * self.lengths))
 
     @property
     def dilatation(self) -> Array:  # type: ignore[override]  # noqa: D102
-        return _frozen(self.lengths / self.rest_lengths)
+        return self.lengths / self.rest_lengths
 
     @property
     def dilatation_rate(self) -> Array:  # noqa: D102
         rates = _edges(self.velocity_collection, self.ring_rod_flag)
-        return _frozen((self._edges * rates).sum(axis=0) / (self.lengths * self.rest_lengths))
+        return (self._edges * rates).sum(axis=0) / (self.lengths * self.rest_lengths)
 
     @property
     def voronoi_dilatation(self) -> Array:  # noqa: D102
-        return _frozen(0.5 * np.add(*strain.between(self.lengths, self.ring_rod_flag)) / self.rest_voronoi_lengths)
+        length = 0.5 * np.add(*strain.between(self.lengths, self.ring_rod_flag))
+        return length / self.rest_voronoi_lengths
 
     @property
     def sigma(self) -> Array:  # type: ignore[override]  # noqa: D102
-        return _frozen(strain.shear(self.director_collection, self._edges, self.rest_lengths))
+        return strain.shear(self.director_collection, self._edges, self.rest_lengths)
 
     @property
     def kappa(self) -> Array:  # type: ignore[override]  # noqa: D102
-        return _frozen(strain.curvature(self.director_collection, self.rest_voronoi_lengths, self.ring_rod_flag))
+        return strain.curvature(self.director_collection, self.rest_voronoi_lengths, self.ring_rod_flag)
 
     @property
     def internal_stress(self) -> Array:  # noqa: D102
-        return _frozen(strain.apply(self.shear_matrix, self.sigma - self.rest_sigma))
+        return strain.apply(self.shear_matrix, self.sigma - self.rest_sigma)
 
     @property
     def internal_couple(self) -> Array:  # noqa: D102
-        return _frozen(strain.apply(self.bend_matrix, self.kappa - self.rest_kappa))
+        return strain.apply(self.bend_matrix, self.kappa - self.rest_kappa)
 
     @property
     def internal_forces(self) -> Array:  # noqa: D102
         stress = strain.apply_transposed(self.director_collection, self.internal_stress / self.dilatation)
-        return _frozen(strain.difference(stress, self.ring_rod_flag))
+        return strain.difference(stress, self.ring_rod_flag)
 
     @property
     def internal_torques(self) -> Array:  # noqa: D102
-        return _frozen(strain.internal_torques(
+        return strain.internal_torques(
             directors=self.director_collection, omega=self.omega_collection, edges=self._edges,
             edge_rates=_edges(self.velocity_collection, self.ring_rod_flag), rest_lengths=self.rest_lengths,
             stress=self.internal_stress, kappa=self.kappa, couple=self.internal_couple,
             voronoi_dilatation=self.voronoi_dilatation, rest_voronoi_lengths=self.rest_voronoi_lengths,
             inertia=self.mass_second_moment_of_inertia, is_ring=self.ring_rod_flag,
-        ))  # fmt: skip
+        )  # fmt: skip
 
     @property
     def damping_forces(self) -> Array:  # noqa: D102
         ends = self.velocity_collection if not self.ring_rod_flag else _closed(self.velocity_collection)
         force = self.dissipation_constant_for_forces * self.lengths * 0.5 * (ends[:, 1:] + ends[:, :-1])
-        return _frozen(strain.quadrature(force, self.ring_rod_flag))
+        return strain.quadrature(force, self.ring_rod_flag)
 
     @property
     def damping_torques(self) -> Array:  # noqa: D102
-        return _frozen(self.dissipation_constant_for_torques * self.omega_collection * self.lengths)
+        return self.dissipation_constant_for_torques * self.omega_collection * self.lengths
 
     @property
     def acceleration_collection(self) -> Array:  # noqa: D102
-        return _frozen(self._fields["net_forces"] / self.mass)
+        return self._fields["net_forces"] / self.mass
 
     @property
     def alpha_collection(self) -> Array:  # noqa: D102
         alpha = strain.apply(self.inv_mass_second_moment_of_inertia, self._fields["net_torques"])
-        return _frozen(alpha * self.dilatation)
+        return alpha * self.dilatation
 
     # between the rod and its simulation
 
@@ -413,12 +415,6 @@ class CosseratRod(RodBase):
         for name, target in memory.items():
             target[...] = self._fields[name]
         self._fields = {**self._fields, **memory}
-
-
-def _frozen(values: Array) -> Array:
-    """Mark an array as read-only: what is computed when read cannot be changed."""
-    values.flags.writeable = False
-    return values
 
 
 def _closed(values: Array) -> Array:
