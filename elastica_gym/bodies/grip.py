@@ -1,0 +1,101 @@
+"""How an animal with two arms touches its object: gaps, and how far round it each arm is wrapped.
+
+Both are told from where they are, not from forces. Surfaces are those that contact knows
+(`elastica_gym.cosserat.kernels.cylinders`): an element is its axis swept by a ball of its radius, and so is the object.
+"""
+
+from math import atan2
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cosserat import State
+from ..cosserat.kernels.compiler import entry
+from ..cosserat.kernels.contact import middle, overlap
+from ..cosserat.kernels.vectors import column, cross, dot, plus, times, vector
+from ..cosserat.model import Array, Index
+from .body import Body
+
+TOUCH = 0.002
+"""Gap up to which surfaces touch [m]"""
+DEEPEST = 0.005
+"""Overlap up to which they do: what is deeper in each other than any contact would allow does not count as touch [m]"""
+
+
+class Grip(NamedTuple):
+    """How each of B animals of E elements touches its first object."""
+
+    gaps: Array
+    """Least distance of each element's surface from the object's, negative where they overlap [m], (B, E)"""
+    head_gap: Array
+    """The least of those of the head's elements [m], (B,)"""
+    spans: Array
+    """Angle about the object's axis from the first to the last element of each arm that touches it, followed along
+    the arm [rad], (B, 2)"""
+    counts: Index
+    """How many elements of each arm touch it, (B, 2) int64"""
+    base: Array
+    """Centre of the object's base, the end that it stands on at the start [m], (B, 3)"""
+    tilt: Array
+    """Angle of its axis from upright [rad], (B,)"""
+
+    @property
+    def touching(self) -> NDArray[np.bool_]:
+        """Whether each element touches the object, (B, E) bool; none does where any is in it deeper than `DEEPEST`."""
+        sound = self.gaps.min(axis=1, keepdims=True) >= -DEEPEST
+        return sound & (self.gaps <= TOUCH)
+
+
+def grip(body: Body, state: State) -> Grip:
+    """Return how animals, each one rod whose head is between its arms, touch their first object.
+
+    An arm that is in the object deeper than `DEEPEST` anywhere is not counted as touching it at all. An arm's azimuth
+    is that of its elements' centres about the object's axis; from each to the next it turns by less than half a turn.
+    """
+    if not body.cylinders:
+        raise ValueError(f"body {body.name!r} has no object to grip")
+    arms, first = arm_elements(body), int(body.model.first_slot[0])
+    thing, n_envs = body.model.cylinders, len(state.x)
+    centre, axis = state.body_x[:, 0], state.body_Q[:, 0, 2]
+    gaps = np.zeros((n_envs, int(body.model.n_elements[0])))
+    spans, counts = np.zeros((n_envs, 2)), np.zeros((n_envs, 2), dtype=np.int64)
+    elements = slice(first, first + gaps.shape[1])
+    nodes = slice(first, first + gaps.shape[1] + 1)
+    _measure(np.ascontiguousarray(state.x[:, :, nodes]), np.ascontiguousarray(state.radius[:, elements]), arms,
+             np.ascontiguousarray(centre), np.ascontiguousarray(axis), float(thing.length[0]), float(thing.radius[0]),
+             gaps, spans, counts)  # fmt: skip
+    return Grip(
+        gaps=gaps, head_gap=gaps[:, arms[0, 1] : arms[1, 0]].min(axis=1), spans=spans, counts=counts,
+        base=centre - 0.5 * thing.length[0] * axis, tilt=np.arctan2(np.hypot(axis[:, 0], axis[:, 2]), axis[:, 1]),
+    )  # fmt: skip
+
+
+def arm_elements(body: Body) -> Index:
+    """Return the first element and the last + 1 of each arm, counted along the rod, (2, 2); the head is between."""
+    ends = np.sort(np.array(body.muscles.arms), axis=1) * body.rods[0].n_elements
+    return np.round(ends).astype(np.int64)
+
+
+@entry
+def _measure(x, radius, arms, centres, axes, length, thickness, gaps, spans, counts):
+    """Compute the gaps of all elements, and the span and count of each arm, environment by environment."""
+    for i in range(x.shape[0]):
+        centre, axis = vector(centres[i]), vector(axes[i])
+        start, edge = plus(centre, -0.5 * length, axis), times(length, axis)
+        for k in range(gaps.shape[1]):
+            first = column(x[i], k)
+            depth, _, _ = overlap(first, plus(column(x[i], k + 1), -1.0, first), radius[i, k], start, edge, thickness)
+            gaps[i, k] = -depth
+        for arm in range(arms.shape[0]):
+            azimuth = begin = end = deepest = 0.0
+            last, count = (0.0, 0.0, 0.0), 0
+            for k in range(arms[arm, 0], arms[arm, 1]):
+                way = plus(middle(x[i], k), -1.0, centre)
+                azimuth += atan2(dot(axis, cross(last, way)), dot(last, way) - dot(axis, last) * dot(axis, way))
+                last, deepest = way, min(deepest, gaps[i, k])
+                if gaps[i, k] <= TOUCH:
+                    begin, end = azimuth if count == 0 else begin, azimuth
+                    count += 1
+            spans[i, arm] = abs(end - begin) if deepest >= -DEEPEST else 0.0
+            counts[i, arm] = count if deepest >= -DEEPEST else 0
