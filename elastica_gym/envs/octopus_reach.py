@@ -67,7 +67,8 @@ All is drawn from the environment's own generator: the heading, uniform; the sha
 sideways by three sine waves of couple, whose curvature at the tips has normal amplitudes of 0.7, 0.35 and 0.175
 1/m; a horizontal velocity with a standard deviation of 0.02 m/s; and the object, upright, at 0.4 m from the
 head, its bearing uniform from straight ahead to straight to the right (``spread="arc"``), or at 0.4 to 0.8 m and any
-bearing (``spread="anywhere"``), drawn again where it would stand in the animal. Muscles are at rest.
+bearing (``spread="anywhere"``), drawn again where it would stand in the animal; or at 0.4 m straight to the right
+(``spread="default"``). Muscles are at rest.
 
 Episode end
 -----------
@@ -78,7 +79,7 @@ finite, or a node or the object is faster than 50 m/s: then the last sound obser
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("arc" or "anywhere").
+``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("arc", "anywhere" or "default").
 
 Version history
 ---------------
@@ -90,16 +91,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bodies import octopus
+from ..bodies.grip import TOUCH
 from ..cosserat.model import Array
 from .gaits import octopus_reach
-from .starts import with_object_anywhere, with_object_on_the_arc
+from .starts import OBJECT_STARTS
 from .task import Mask, Situation, Task, effort, has_toppled, in_heading_frame, no_target, toppled, way_to_goal
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
-
-TOUCH = 0.002
-"""Gap below which surfaces touch [m]"""
 
 
 def draw_goal(rng: np.random.Generator, situation: Situation) -> Array:
@@ -150,7 +149,7 @@ TASK = Task(
     name="OctopusReach",
     make_body=octopus,
     duration=10.0,
-    starts={"arc": with_object_on_the_arc, "anywhere": with_object_anywhere},
+    starts=OBJECT_STARTS,
     goal_size=3,
     draw_goal=draw_goal,
     goal_names=("goal/forward", "goal/right", "home/forward", "home/right"),

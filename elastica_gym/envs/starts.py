@@ -65,29 +65,40 @@ def with_object_on_the_arc(rng: np.random.Generator, body: Body, state: State, i
     The angle is uniform, drawn again where the object would stand in the animal.
     """
     draw_start(rng, body, state, i)
-    _place(body, state, i, lambda: (ARC, rng.uniform(0.0, 0.5 * np.pi)))
+    while not _place(body, state, i, ARC, rng.uniform(0.0, 0.5 * np.pi)):
+        pass
 
 
 def with_object_anywhere(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
     """Write a new start, with the object at 0.4 to 0.8 m from the head, in any direction; both are uniform."""
     draw_start(rng, body, state, i)
-    _place(body, state, i, lambda: (rng.uniform(*RING), rng.uniform(-np.pi, np.pi)))
+    while not _place(body, state, i, rng.uniform(*RING), rng.uniform(-np.pi, np.pi)):
+        pass
 
 
-def _place(body: Body, state: State, i: int, draw: Callable[[], tuple[float, float]]) -> None:
-    """Put the first object where ``draw`` says, as distance from the head and angle to the right [m, rad]."""
+def with_object_to_the_right(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
+    """Write a new start, with the object at 0.4 m straight to the right of the head, the far end of the arc.
+
+    The start is drawn again where the object would stand in the animal.
+    """
+    draw_start(rng, body, state, i)
+    while not _place(body, state, i, ARC, 0.5 * np.pi):
+        draw_start(rng, body, state, i)
+
+
+def _place(body: Body, state: State, i: int, away: float, angle: float) -> bool:
+    """Put the first object at a distance from the head and an angle to the right [m, rad], if it is clear there."""
     x, senses = state.x[i], body.senses
     forward = np.array([x[c, senses.front[0] : senses.front[1] + 1].mean()
                         - x[c, senses.rear[0] : senses.rear[1] + 1].mean() for c in (0, 2)])  # fmt: skip
     forward /= np.linalg.norm(forward)
-    while True:
-        away, angle = draw()
-        cosine, sine = away * np.cos(angle), away * np.sin(angle)
-        way = cosine * forward[0] - sine * forward[1], sine * forward[0] + cosine * forward[1]
-        place = x[[0, 2], senses.head] + way
-        if _clearance(body, x, place) > CLEAR:
-            break
+    cosine, sine = away * np.cos(angle), away * np.sin(angle)
+    way = cosine * forward[0] - sine * forward[1], sine * forward[0] + cosine * forward[1]
+    place = x[[0, 2], senses.head] + way
+    if _clearance(body, x, place) <= CLEAR:
+        return False
     state.body_x[i, 0, [0, 2]] = place
+    return True
 
 
 def _clearance(body: Body, x: Array, place: Array) -> float:
@@ -97,3 +108,9 @@ def _clearance(body: Body, x: Array, place: Array) -> float:
     middles = 0.5 * (nodes[:, 1:] + nodes[:, :-1])
     away = np.linalg.norm(middles - place[:, None], axis=0) - 0.5 * rod.rest_length - rod.radius
     return float(away.min()) - body.cylinders[0].radius
+
+
+OBJECT_STARTS: dict[str, Callable[[np.random.Generator, Body, State, int], None]] = {
+    "arc": with_object_on_the_arc, "anywhere": with_object_anywhere, "default": with_object_to_the_right,
+}  # fmt: skip
+"""By name of the ``spread``; the default is that of the 2020 hackathon"""

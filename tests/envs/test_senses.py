@@ -123,7 +123,8 @@ def test_home_is_felt(make_vec):
 
 
 @pytest.mark.parametrize(("spread", "nearest", "furthest", "low", "high"),
-                         [("arc", 0.4, 0.4, 0.0, 90.0), ("anywhere", 0.4, 0.8, -180.0, 180.0)])  # fmt: skip
+                         [("arc", 0.4, 0.4, 0.0, 90.0), ("anywhere", 0.4, 0.8, -180.0, 180.0),
+                          ("default", 0.4, 0.4, 90.0, 90.0)])  # fmt: skip
 def test_where_the_object_stands(make_vec, spread, nearest, furthest, low, high):
     env = make_vec(REACH, 400, spread=spread)
     observations, _ = env.reset(seed=0)
