@@ -131,6 +131,7 @@ class BatchEnv(VectorEnv):
         self.state, self.control = at_rest(self.body.model, self.body.rods, n, cylinders=self.body.cylinders)
         self.pose, self._before = make_pose(n, n_objects), make_pose(n, n_objects)
         self.goal = np.zeros((n, self.task.goal_size))
+        self.progress, self._progress_before = (np.zeros((n, len(self.task.progress_names))) for _ in range(2))
         self.elapsed = np.zeros(n, dtype=np.int64)
         self.activations = np.zeros((n, N_ACTIVATIONS))
         self.levels = np.zeros((n, N_ACTIVATIONS))
@@ -243,6 +244,8 @@ class BatchEnv(VectorEnv):
         for old, new in zip(self._before, self.pose, strict=True):
             old[...] = new
         self._feel(self._before)
+        self._progress_before[:] = self.progress
+        self._follow(self.pose.sound == 1)
 
     def _feel(self, last: Pose) -> None:
         """Feel where the animals are; of those that have diverged, the pose stays the last sound one."""
@@ -250,6 +253,10 @@ class BatchEnv(VectorEnv):
         diverged = self.pose.sound == 0
         for old, new in zip(last._replace(sound=self.pose.sound), self.pose, strict=True):
             new[diverged] = old[diverged]
+
+    def _follow(self, where: Mask | Index) -> None:
+        """Follow the episodes of some environments."""
+        self.progress[where] = self.task.follow(self.situation(), self.state)[where]
 
     def _advance_physics(self) -> None:
         """Run all substeps of a control step, the environments shared among threads."""
@@ -270,7 +277,8 @@ class BatchEnv(VectorEnv):
     def situation(self) -> Situation:
         """Return where the batch stands."""
         left = np.maximum(1.0 - self.elapsed / self.max_episode_steps, 0.0)
-        return Situation(self.pose, self._before, self.goal, self.activations, left, self.control_dt, self.body)
+        return Situation(self.pose, self._before, self.goal, self.progress, self._progress_before, self.activations,
+                         left, self.control_dt, self.body)  # fmt: skip
 
     def _judge(self, sound: Mask) -> tuple[Array, dict[str, Any]]:
         """Return the rewards and an info with each of their terms; where physics has failed, only the penalty."""
@@ -321,7 +329,9 @@ class BatchEnv(VectorEnv):
         self.activations[begun] = self.levels[begun] = 0.0
         self._ended[begun] = False
         for i in begun.tolist():
-            self._draw_start(self._generators[i], self.body, self.state, i)
+            levels = self._draw_start(self._generators[i], self.body, self.state, i)
+            if levels is not None:
+                self.activations[i] = self.levels[i] = levels
             # a step of no duration moves nothing, and computes curvature and contact for the senses
             advance(self.body.model, self.state, self.control, i, i + 1, 0.0, 1)
             self.state.step[i] = 0
@@ -330,14 +340,19 @@ class BatchEnv(VectorEnv):
             old[begun] = new[begun]
         for i in begun.tolist():
             self.goal[i] = self.task.draw_goal(self._generators[i], self._situation_of(i))
+        self.progress[begun] = 0.0
+        self._follow(begun)
+        self._progress_before[begun] = self.progress[begun]
         self._distance[begun] = self.task.distance(self.situation())[begun]
         self._observe(begun)
 
     def _situation_of(self, i: int) -> Situation:
         one = slice(i, i + 1)
         s = self.situation()
-        return s._replace(pose=s.pose.only(one), before=s.before.only(one), goal=s.goal[one],
-                          activations=s.activations[one], time_left=s.time_left[one])  # fmt: skip
+        return s._replace(
+            pose=s.pose.only(one), before=s.before.only(one), goal=s.goal[one], progress=s.progress[one],
+            progress_before=s.progress_before[one], activations=s.activations[one], time_left=s.time_left[one],
+        )  # fmt: skip
 
     def _blank(self, begun: Mask, rewards: Array, terminated: Mask, truncated: Mask, info: dict[str, Any]) -> None:
         """Clear what a step that only began an episode returns (autoreset NEXT_STEP)."""
@@ -415,7 +430,8 @@ class BatchEnv(VectorEnv):
         return self.task.target(self.goal)
 
 
-_EPISODE_STATE = ("goal", "elapsed", "activations", "levels", "_readings", "_observations", "_distance", "_ended")
+_EPISODE_STATE = ("goal", "progress", "_progress_before", "elapsed", "activations", "levels", "_readings",
+                  "_observations", "_distance", "_ended")  # fmt: skip
 
 
 @functools.lru_cache(maxsize=8)

@@ -94,8 +94,9 @@ from ..bodies import octopus
 from ..bodies.grip import TOUCH
 from ..cosserat.model import Array
 from .gaits import octopus_reach
+from .handling import direction_to_object
 from .starts import OBJECT_STARTS
-from .task import Mask, Situation, Task, effort, has_toppled, in_heading_frame, no_target, toppled, way_to_goal
+from .task import Mask, Situation, Task, effort, has_toppled, no_target, toppled, way_to_goal
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -108,10 +109,7 @@ def draw_goal(rng: np.random.Generator, situation: Situation) -> Array:
 
 def see_goal(situation: Situation) -> Array:
     """Return the direction to the object, forward and right, and the way home, forward and right, (B, 4)."""
-    pose = situation.pose
-    x, z = pose.objects[:, 0, 0] - pose.head[:, 0], pose.objects[:, 0, 2] - pose.head[:, 2]
-    away = np.maximum(np.sqrt(x * x + z * z), 1e-9)
-    return np.stack([*in_heading_frame(situation, x / away, z / away), *way_to_goal(situation)], axis=1)
+    return np.stack([*direction_to_object(situation), *way_to_goal(situation)], axis=1)
 
 
 def approach(situation: Situation) -> Array:

@@ -4,14 +4,25 @@ from typing import Any
 
 import gymnasium
 
-from . import octopus_crawl, octopus_reach, snake_forward, snake_reach
+from . import (
+    octopus_crawl,
+    octopus_fetch,
+    octopus_grab,
+    octopus_move,
+    octopus_reach,
+    octopus_return,
+    snake_forward,
+    snake_reach,
+)
 from .batch import BatchEnv
 from .single import SingleEnv
 from .task import Task
 
 NAMESPACE = "elastica_gym"
 TASKS: dict[str, Task] = {
-    module.TASK.name: module.TASK for module in (snake_forward, snake_reach, octopus_crawl, octopus_reach)
+    module.TASK.name: module.TASK
+    for module in (snake_forward, snake_reach, octopus_crawl, octopus_reach, octopus_move, octopus_grab,
+                   octopus_return, octopus_fetch)
 }
 IDS = tuple(f"{NAMESPACE}/{name}-v0" for name in TASKS)
 

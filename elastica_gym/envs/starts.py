@@ -1,12 +1,18 @@
-"""How an episode starts: the animal somewhat bent, in any direction, slightly in motion; its object at some place."""
+"""How an episode starts: the animal somewhat bent, in any direction, slightly in motion; its object at some place.
 
+Each start is written into environment i. What it returns is what the muscles' activations have reached, or None where
+they are at rest.
+"""
+
+import functools
 from collections.abc import Callable
 
 import numpy as np
 
-from ..bodies.body import Body
-from ..cosserat import State
+from ..bodies.body import Body, activate
+from ..cosserat import State, advance, at_rest
 from ..cosserat.model import Array
+from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
 
 BENDS = (0.7, 0.35, 0.175)
 """Standard deviation of the curvature of each sine wave along the body, where it is thinnest, in 1/body length"""
@@ -18,6 +24,15 @@ ARC = 0.4
 """Distance of the object from the head on the arc [m]"""
 RING = (0.4, 0.8)
 """Its least and largest distance anywhere [m]"""
+NEARBY = (0.2, 0.4)
+"""Its least and largest distance where the animal need hardly crawl [m]"""
+IN_THE_BEND = ((0.224, 0.22), (0.255, 0.2), (0.291, 0.1))
+"""Where an arm can grab it by bending at full strength: distance from the head [m], and angle to the right of the way
+ahead, for the second arm, or behind, for the first [rad]"""
+GRABBING = 0.8
+"""Time in which the arm is bent to full strength [s]"""
+HOLDING = 2.0
+"""Time after which it holds the object, at rest [s]"""
 
 
 def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
@@ -86,7 +101,7 @@ def with_object_to_the_right(rng: np.random.Generator, body: Body, state: State,
         draw_start(rng, body, state, i)
 
 
-def _place(body: Body, state: State, i: int, away: float, angle: float) -> bool:
+def _place(body: Body, state: State, i: int, away: float, angle: float, clear: float = CLEAR) -> bool:
     """Put the first object at a distance from the head and an angle to the right [m, rad], if it is clear there."""
     x, senses = state.x[i], body.senses
     forward = np.array([x[c, senses.front[0] : senses.front[1] + 1].mean()
@@ -95,7 +110,7 @@ def _place(body: Body, state: State, i: int, away: float, angle: float) -> bool:
     cosine, sine = away * np.cos(angle), away * np.sin(angle)
     way = cosine * forward[0] - sine * forward[1], sine * forward[0] + cosine * forward[1]
     place = x[[0, 2], senses.head] + way
-    if _clearance(body, x, place) <= CLEAR:
+    if _clearance(body, x, place) <= clear:
         return False
     state.body_x[i, 0, [0, 2]] = place
     return True
@@ -110,7 +125,68 @@ def _clearance(body: Body, x: Array, place: Array) -> float:
     return float(away.min()) - body.cylinders[0].radius
 
 
-OBJECT_STARTS: dict[str, Callable[[np.random.Generator, Body, State, int], None]] = {
+def with_object_nearby(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
+    """Write a new start, with the object at 0.2 to 0.4 m from the head, in any direction; both are uniform."""
+    draw_start(rng, body, state, i)
+    while not _place(body, state, i, rng.uniform(*NEARBY), rng.uniform(-np.pi, np.pi)):
+        pass
+
+
+def with_object_held(rng: np.random.Generator, body: Body, state: State, i: int) -> Array:
+    """Write a new start, in which an arm, either one, holds the object, and return the activations that hold it.
+
+    It is one of six such states, turned to a random heading and slightly in motion.
+    """
+    held, levels = holding(body)
+    chosen, heading, velocity = rng.integers(len(levels)), rng.uniform(-np.pi, np.pi), rng.normal(0.0, SPEED, 2)
+    for field, kept in zip(state, held, strict=True):
+        field[i] = kept[chosen]
+    nodes = slice(int(body.model.first_slot[0]), int(body.model.first_slot[0]) + body.rods[0].n_elements + 1)
+    _rotate(heading, state, i, nodes)
+    state.v[i, 0, nodes], state.v[i, 2, nodes] = velocity
+    state.body_v[i, 0, [0, 2]] = velocity
+    return levels[chosen]
+
+
+def _rotate(angle: float, state: State, i: int, nodes: slice) -> None:
+    """Turn the animal and its objects about the vertical through the origin, from x to z, in place."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    contact = state.body_contact[i]
+    # (each with the axis of its vectors first)
+    for vectors in (state.x[i, :, nodes], state.Q[i, :, :, nodes].transpose(1, 0, 2), state.body_x[i].T,
+                    state.body_Q[i].transpose(2, 0, 1), contact[..., 1:4].transpose(2, 0, 1),
+                    contact[..., 4:7].transpose(2, 0, 1)):  # fmt: skip
+        x, z = vectors[0].copy(), vectors[2].copy()
+        vectors[0], vectors[2] = x * cosine - z * sine, x * sine + z * cosine
+
+
+@functools.lru_cache(maxsize=1)
+def holding(body: Body) -> tuple[State, Array]:
+    """Return states at rest in which an arm holds the object, and the activations that hold it, (6, 42).
+
+    The object is put into the bend of each arm, which is then bent at full strength; what it was bent for two seconds
+    holds the object wrapped by more than 200 degrees (`tests/envs/test_senses.py`). Not to be changed.
+    """
+    places = [(away, angle) if arm else (away, np.pi - angle) for arm in range(2) for away, angle in IN_THE_BEND]
+    state, control = at_rest(body.model, body.rods, len(places), cylinders=body.cylinders)
+    levels = np.zeros((len(places), N_ACTIVATIONS))
+    for i, (away, angle) in enumerate(places):
+        for field, resting in zip(state, body.rest, strict=True):
+            field[i] = resting[0]
+        if not _place(body, state, i, away, angle, clear=0.0):
+            raise ValueError(f"an object {away} m from the head, {angle:.2f} rad to its right, stands in the animal")
+        levels[i, (i // len(IN_THE_BEND)) * N_FUNCTIONS :][:N_FUNCTIONS] = 1.0
+    n_parts = 16
+    for part in range(n_parts):
+        activate(body.couples, levels * (part + 1) / n_parts, control.couple)
+        advance(body.model, state, control, 0, len(places), body.sim_dt, round(GRABBING / n_parts / body.sim_dt))
+    advance(body.model, state, control, 0, len(places), body.sim_dt, round((HOLDING - GRABBING) / body.sim_dt))
+    for moving in (state.v, state.w, state.body_v, state.body_w, state.time, state.step):
+        moving[:] = 0
+    return state, levels
+
+
+OBJECT_STARTS: dict[str, Callable[[np.random.Generator, Body, State, int], Array | None]] = {
     "arc": with_object_on_the_arc, "anywhere": with_object_anywhere, "default": with_object_to_the_right,
 }  # fmt: skip
 """By name of the ``spread``; the default is that of the 2020 hackathon"""

@@ -22,6 +22,10 @@ class Situation(NamedTuple):
     """Where they were a control step ago"""
     goal: Array
     """What the task drew at reset, (B, G)"""
+    progress: Array
+    """What the task follows through the episode, as of now, (B, M)"""
+    progress_before: Array
+    """And a control step ago, (B, M)"""
     activations: Array
     """Activations commanded in this step, (B, 42)"""
     time_left: Array
@@ -29,6 +33,11 @@ class Situation(NamedTuple):
     control_dt: float
     """Duration of a control step [s]"""
     body: Body
+
+
+def follow_nothing(situation: Situation, state: State) -> Array:
+    """Return no numbers: what such a task asks for is in the poses, (B, 0)."""
+    return situation.progress
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +52,8 @@ class Task:
     duration : float
         Simulated time of an episode [s].
     starts : dict of str to callable
-        By name of the ``spread``, what writes a new start into an environment; see `elastica_gym.envs.starts`.
+        By name of the ``spread``, what writes a new start into an environment and returns the activations that the
+        muscles have reached in it, (42,), or None where they are at rest; see `elastica_gym.envs.starts`.
     goal_size : int
         How many numbers G a goal is.
     draw_goal : callable
@@ -58,6 +68,11 @@ class Task:
         From a situation, each term before its weight, (B,).
     reward_weights : dict of str to float
         Weight of each term.
+    progress_names : tuple of str
+        Names of the M numbers that the task follows through an episode; by default none.
+    follow : callable
+        From a situation and the State, those numbers, (B, M), with ``progress`` as of the last step. It is asked at
+        reset too, when all of the episode is left and ``progress`` is zero.
     distance : callable
         From a situation, how far the animal has come [m], (B,).
     succeeds : callable
@@ -76,7 +91,7 @@ class Task:
     name: str
     make_body: Callable[..., Body]
     duration: float
-    starts: dict[str, Callable[[np.random.Generator, Body, State, int], None]]
+    starts: dict[str, Callable[[np.random.Generator, Body, State, int], Array | None]]
     goal_size: int
     draw_goal: Callable[[np.random.Generator, Situation], Array]
     goal_names: tuple[str, ...]
@@ -87,6 +102,8 @@ class Task:
     distance: Callable[[Situation], Array]
     succeeds: Callable[[Situation], Mask]
     ends_on_success: bool
+    progress_names: tuple[str, ...] = ()
+    follow: Callable[[Situation, State], Array] = follow_nothing
     failures: dict[str, Callable[[Situation], Mask]] = field(default_factory=dict)
     target: Callable[[Array], Array | None]
     scripted_policy: Callable[[Any], Array]

@@ -1,0 +1,229 @@
+"""What tasks with an object follow: how it is gripped, what it has been through, and what of that is rewarded.
+
+All is told from where things are at the end of each control step (`elastica_gym.bodies.grip`), not from forces.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..bodies.grip import TOUCH, arm_elements, grip
+from ..cosserat.model import Array, State
+from .task import Mask, Situation, in_heading_frame, way_to_goal
+
+WRAPPED = np.radians(200.0)
+"""Angle around the object's axis that the touching elements of an arm span where it has grabbed it [rad]"""
+KEPT = np.radians(150.0)
+"""And where it still holds it [rad]"""
+FEWEST = 5
+"""Touching elements without which an arm counts as spanning nothing"""
+GRABBING_TIME = 0.5
+"""How long an arm has to have it wrapped without a break [s]"""
+SLACK_TIME = 0.2
+"""How long it may then hold less [s]"""
+UPRIGHT = np.radians(45.0)
+"""Tilt up to which the object stands [rad]"""
+MOVED = 0.1
+"""Way of the object that counts as moved [m]"""
+CRAWLED = (0.2, 0.1)
+"""Distance of the head and of the centre of mass from their start that counts as crawled [m]"""
+AT_HOME = 0.1
+"""Distance of the head from home that counts as being there [m]"""
+BROUGHT = 0.3
+"""Distance of the object from the head that counts as having brought it [m]"""
+GOAL_SIZE = 5
+"""Home (x, z), the centre of mass at the start (x, z), and how far the object was from home"""
+
+
+class Handling(NamedTuple):
+    """How each of B animals handles its object: the columns of a situation's ``progress``, (B,) each."""
+
+    reach: Array
+    """Least distance of the object's surface from the half of an arm that is next to the head [m]"""
+    span: Array
+    """The larger of the angles around the object's axis that an arm's touching elements span [rad]"""
+    first: Array
+    """Steps in a row at whose end the first arm has had it wrapped"""
+    second: Array
+    """Steps in a row at whose end the second arm has had it wrapped"""
+    slack: Array
+    """Steps in a row at whose end neither arm has held it"""
+    grabbed: Array
+    """1 from when an arm has grabbed it until it is let go, else 0; what is held at the start is grabbed"""
+    moved_x: Array
+    """Way that the centre of its base has made while it stood and was touched, along x [m]"""
+    moved_z: Array
+    """The same along z [m]"""
+    base_x: Array
+    """Where the centre of its base is [m]"""
+    base_z: Array
+    """The same [m]"""
+    tilt: Array
+    """Angle of its axis from upright [rad]"""
+    head_way: Array
+    """Furthest that the head has been from where it was at the start [m]"""
+    centre_way: Array
+    """Furthest that the centre of mass has been from there [m]"""
+
+
+def handling(progress: Array) -> Handling:
+    """Return the columns of a situation's ``progress`` or ``progress_before`` by name."""
+    return Handling(*progress.T)
+
+
+def follow(situation: Situation, state: State) -> Array:
+    """Return how the object is handled at the end of this step, (B, M)."""
+    s, old, begins = situation, handling(situation.progress), situation.time_left >= 1.0
+    held = grip(s.body, state)
+    arms = np.where(held.counts >= FEWEST, held.spans, 0.0)
+    span = np.maximum(arms[:, 0], arms[:, 1])
+    first, second = (np.where(arms[:, a] >= WRAPPED, n + 1.0, 0.0) for a, n in enumerate((old.first, old.second)))
+    slack = np.where(span >= KEPT, 0.0, old.slack + 1.0)
+    # n looks in a row are n - 1 steps apart
+    grabs = (np.maximum(first, second) - 1.0) * s.control_dt >= GRABBING_TIME - 1e-9
+    keeps = (old.grabbed == 1.0) & (slack * s.control_dt <= SLACK_TIME + 1e-9)
+    grabbed = np.where(begins, span >= KEPT, grabs | keeps)
+    base_x, base_z = held.base[:, 0], held.base[:, 2]
+    carried = (s.pose.gaps[:, 0] <= TOUCH) & (held.tilt <= UPRIGHT) & ~begins
+    return np.stack(Handling(
+        reach=_reach(held.gaps, arm_elements(s.body)), span=span, first=first, second=second, slack=slack,
+        grabbed=grabbed.astype(np.float64), base_x=base_x, base_z=base_z, tilt=held.tilt,
+        moved_x=old.moved_x + np.where(carried, base_x - old.base_x, 0.0),
+        moved_z=old.moved_z + np.where(carried, base_z - old.base_z, 0.0),
+        head_way=np.maximum(old.head_way, _away(s.pose.head, s.goal[:, 0], s.goal[:, 1])),
+        centre_way=np.maximum(old.centre_way, _away(s.pose.centre, s.goal[:, 2], s.goal[:, 3])),
+    ), axis=1)  # fmt: skip
+
+
+def _reach(gaps: Array, arms: Array) -> Array:
+    """Return the least gap of the half of either arm that is next to the head, 0 where it touches [m], (B,)."""
+    (tip, base), (other_base, other_tip) = arms
+    inner = gaps[:, (tip + base) // 2 : base].min(axis=1)
+    other = gaps[:, other_base : (other_base + other_tip) // 2].min(axis=1)
+    return np.maximum(np.minimum(inner, other), 0.0)
+
+
+def _away(place: Array, x: Array, z: Array) -> Array:
+    """Return the horizontal distance of places (B, 3) from others [m], (B,)."""
+    dx, dz = place[:, 0] - x, place[:, 2] - z
+    return np.sqrt(dx * dx + dz * dz)
+
+
+def draw_goal(rng: np.random.Generator, situation: Situation) -> Array:
+    """Return home, which is where the head is, and the rest of a goal, (5,)."""
+    return goal_with_home(situation, situation.pose.head[0, 0], situation.pose.head[0, 2])
+
+
+def goal_with_home(situation: Situation, x: float, z: float) -> Array:
+    """Return the goal of one environment whose home is there, (5,)."""
+    pose = situation.pose
+    away = _away(pose.objects[:, 0], np.array([x]), np.array([z]))
+    return np.array([x, z, *pose.centre[0, [0, 2]], *away])
+
+
+def brought(situation: Situation) -> Array:
+    """Return by how much the object is nearer to home than at the start [m], (B,)."""
+    goal = situation.goal
+    return goal[:, 4] - _away(situation.pose.objects[:, 0], goal[:, 0], goal[:, 1])
+
+
+def direction_to_object(situation: Situation) -> tuple[Array, Array]:
+    """Return the direction from the head to the object, forward and right, (B,) each."""
+    pose = situation.pose
+    x, z = pose.objects[:, 0, 0] - pose.head[:, 0], pose.objects[:, 0, 2] - pose.head[:, 2]
+    away = np.maximum(np.sqrt(x * x + z * z), 1e-9)
+    return in_heading_frame(situation, x / away, z / away)
+
+
+def direction_home(situation: Situation) -> tuple[Array, Array]:
+    """Return the direction from the head to its home, forward and right, (B,) each; at home it is 0."""
+    forward, right = way_to_goal(situation)
+    away = np.maximum(np.sqrt(forward * forward + right * right), 1e-9)
+    return forward / away, right / away
+
+
+def now(situation: Situation) -> Handling:
+    """Return how the object is handled."""
+    return handling(situation.progress)
+
+
+def before(situation: Situation) -> Handling:
+    """Return how it was handled a step ago."""
+    return handling(situation.progress_before)
+
+
+# what is rewarded: each is by how much a function of where things are has grown, and adds up to nothing over a detour
+
+
+def approach(situation: Situation) -> Array:
+    """Return by how much an arm's inner half has come nearer to the object in this step, in body lengths, (B,)."""
+    return (before(situation).reach - now(situation).reach) / situation.body.senses.length
+
+
+def crawl(situation: Situation) -> Array:
+    """Return by how much the furthest way of the head from its start has grown, in parts of 0.2 m, up to 1, (B,)."""
+    least, _ = CRAWLED
+    new, old = (np.minimum(h.head_way, least) for h in (now(situation), before(situation)))
+    return (new - old) / least
+
+
+def moved(progress: Handling) -> Array:
+    """Return how far the object has been moved [m], (B,)."""
+    return np.sqrt(progress.moved_x * progress.moved_x + progress.moved_z * progress.moved_z)
+
+
+def move(situation: Situation) -> Array:
+    """Return by how much the way of the object has grown, in parts of 0.1 m, up to 1, (B,)."""
+    new, old = (np.minimum(moved(h), MOVED) for h in (now(situation), before(situation)))
+    return (new - old) / MOVED
+
+
+def wrap(situation: Situation) -> Array:
+    """Return by how much the angle around the object has grown, up to 200 degrees [rad], (B,)."""
+    return np.minimum(now(situation).span, WRAPPED) - np.minimum(before(situation).span, WRAPPED)
+
+
+def grab(situation: Situation) -> Array:
+    """Return 1 where the object has been grabbed in this step, -1 where it has been let go, (B,)."""
+    return now(situation).grabbed - before(situation).grabbed
+
+
+def home(situation: Situation) -> Array:
+    """Return by how much g max(0, 1 - d) has grown, with g whether the object is held, d the way home, (B,).
+
+    The way home is that of the head, in body lengths.
+    """
+    s = situation
+
+    def near(head: Array) -> Array:
+        return np.maximum(1.0 - _away(head, s.goal[:, 0], s.goal[:, 1]) / s.body.senses.length, 0.0)
+
+    return now(s).grabbed * near(s.pose.head) - before(s).grabbed * near(s.before.head)
+
+
+def is_at_home(situation: Situation) -> Mask:
+    """Return whether the head is at home, and the object, in the animal's hold, near it, (B,) bool."""
+    s, h = situation, now(situation)
+    at_home = _away(s.pose.head, s.goal[:, 0], s.goal[:, 1]) <= AT_HOME
+    return (h.grabbed == 1.0) & at_home & (_away(s.pose.head, h.base_x, h.base_z) <= BROUGHT)
+
+
+def has_crawled(situation: Situation) -> Mask:
+    """Return whether the head and the centre of mass have been far enough from their starts, (B,) bool."""
+    h, (head, centre) = now(situation), CRAWLED
+    return (h.head_way >= head) & (h.centre_way >= centre)
+
+
+def has_moved(situation: Situation) -> Mask:
+    """Return whether the object has been moved by 0.1 m, (B,) bool."""
+    return moved(now(situation)) >= MOVED
+
+
+def has_fallen(situation: Situation) -> Mask:
+    """Return whether the object leans by more than 45 degrees, (B,) bool."""
+    return now(situation).tilt > UPRIGHT
+
+
+def fallen(situation: Situation) -> Array:
+    """Return 1 where the object leans by more than 45 degrees, (B,)."""
+    return has_fallen(situation).astype(np.float64)

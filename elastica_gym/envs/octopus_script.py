@@ -1,0 +1,161 @@
+"""A scripted octopus: it walks to its object, turns an arm's inside to it, bends the arm around it and carries it home.
+
+It looks at the whole state, and at nothing but the present. Bending at full strength, an arm takes hold of what stands
+in its bend, within some 15 cm of its base and on the right of it, the side away from the other arm. Places are as
+seen from the head: ahead and to the right [m]. What holds for the second arm, which points ahead, holds for
+the first one in the mirror: with the same activations, for those that twist are zero.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..cosserat.model import Array
+from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
+from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
+from .handling import now
+from .task import Mask, in_heading_frame, way_to_goal
+
+if TYPE_CHECKING:
+    from .batch import BatchEnv
+
+STROKING = np.array(OCTOPUS_FUNCTIONS)
+"""The first arm's activations that a stroke plays"""
+BENDING = np.arange(N_FUNCTIONS)
+"""The first arm's activations that bend it sideways"""
+LIFTING = np.array([14, 15, 16])
+"""Its activations of the first three functions that lift it"""
+STEERING = 0.8
+"""Angle off course at which one arm rests, and the other turns the animal [rad]"""
+LEAST = -0.5
+"""What an arm does of the stroke, at least: the reverse of half of it"""
+CLOSE = (0.32, 0.34)
+"""Distance from the head below which it turns rather than walks: where the object is sideways, and elsewhere [m]"""
+BEHIND = -0.12
+"""How far the object may be to the left for that [m]"""
+BEND = ((0.17, 0.32), 0.06)
+"""Where the arm begins to bend: how far ahead, and at most how far from the line along which it takes hold [m]"""
+REACH = ((0.1, 0.4), (-0.15, 0.2))
+"""Where it goes on bending: how far ahead and to the right [m]"""
+RAMP = 0.15
+"""Growth of the activation that bends it, a control step"""
+
+CARRYING = {
+    "ahead": ((0.41, 0.16), 0.25, (
+        (1.56, 0.67, -0.66, -0.76, 0.98, 1.83, 0.44, -3.43, -1.56),
+        (1.85, 1.95, -0.02, -1.18, -2.22, -1.44, 1.38, -1.8, -0.22),
+        (-1.72, 1.12, -1.87, 1.27, -2.6, 0.0, -0.51, 0.95, -0.73),
+    )),
+    "back": ((-0.13, -0.01), 0.25, (
+        (0.97, 0.89, -1.26, -1.34, 1.59, 3.17, 0.26, -3.24, -1.95),
+        (1.79, 1.72, -0.26, -1.1, -2.18, -1.35, 1.18, -2.21, 0.87),
+        (-1.68, 1.07, -0.38, -0.24, -2.46, -0.41, -0.04, 0.58, -1.44),
+    )),
+    "right": ((-0.05, 0.49), 0.25, (
+        (1.14, 0.32, -1.12, -0.67, 0.95, 3.2, -0.05, -3.46, -1.86),
+        (1.81, 1.3, -0.58, -0.85, -2.76, -1.94, 1.45, -2.27, 0.02),
+        (-0.67, 0.78, -0.54, 0.74, -2.8, 0.01, -0.79, 1.3, -1.7),
+    )),
+    "left": ((0.06, -0.36), 0.258, (
+        (0.34, 1.01, -0.47, -0.72, 0.22, 0.5, 0.62, -2.84, -0.68),
+        (-0.32, 2.26, 0.06, -0.94, -1.5, -1.76, 0.46, -0.9, 0.38),
+        (-1.95, 1.22, -0.25, 0.6, -1.58, 0.89, 0.55, 0.77, -1.11),
+    )),
+}  # fmt: skip
+"""How it carries an object in the second arm: the way that the head makes in 4 s [m], the period [s], and offset, sine
+and cosine of the free arm's activations of a stroke and of the three that lift the holding arm. Found by CMA-ES, 24
+generations of 12 trials in each direction, on the way made while the object stays wrapped"""
+
+
+def fetch(env: "BatchEnv") -> Array:
+    """Return the actions of the script, (B, 42).
+
+    Parameters
+    ----------
+    env : BatchEnv
+        Of octopuses, in a task that follows how the object is handled.
+    """
+    situation = env.situation()
+    h, head = now(situation), situation.pose.head
+    ahead, right = in_heading_frame(situation, h.base_x - head[:, 0], h.base_z - head[:, 2])
+    bearing = np.arctan2(right, ahead)
+    sideways = np.abs(bearing - 0.5 * np.pi) < 0.4
+    is_close = np.sqrt(ahead * ahead + right * right) < np.where(sideways, *CLOSE)
+    # what is ahead is for the second arm, what is behind for the first
+    arm = np.where(ahead >= 0.0, 1, 0)
+    bent = np.take_along_axis(env.levels, BENDING + arm[:, None] * N_FUNCTIONS, axis=1)
+    actions = walk(env, bearing)
+    for chosen, play in (
+        (is_close & (right > BEHIND), turn),
+        (is_close & (right > BEHIND) & _is_in_the_bend(np.abs(ahead), right, bent), bend),
+        (h.grabbed == 1.0, carry),
+    ):
+        actions[chosen] = play(env, arm)[chosen]
+    return actions
+
+
+def _is_in_the_bend(ahead: Array, right: Array, bent: Array) -> Mask:
+    """Return whether an arm, bent to levels (B, 7), has the object where it should begin or go on to bend, (B,)."""
+    level = bent.mean(axis=1)
+    (nearest, furthest), aside = BEND
+    begins = (ahead > nearest) & (ahead < furthest) & (np.abs(right - 0.19 + 0.6 * ahead) < aside)
+    begins &= np.abs(bent).max(axis=1) < 0.2
+    (nearest, furthest), (left, rightmost) = REACH
+    goes_on = (ahead > nearest) & (ahead < furthest) & (right > left) & (right < rightmost)
+    # bent as a whole, not by a stroke
+    goes_on &= (level > 0.04) & (bent.max(axis=1) - bent.min(axis=1) < 0.02)
+    return begins | goes_on
+
+
+def walk(env: "BatchEnv", bearing: Array) -> Array:
+    """Return the actions of a walk to the right that turns towards a bearing from the head's axis [rad], (B, 42)."""
+    off = (bearing - 0.5 * np.pi + np.pi) % (2.0 * np.pi) - np.pi
+    first, second = (np.clip(1.0 - np.maximum(sign * off, 0.0) / STEERING, LEAST, 1.0) for sign in (-1.0, 1.0))
+    return _play(env, first, second)
+
+
+def turn(env: "BatchEnv", arm: Array) -> Array:
+    """Return the actions of a turn that brings an arm, which rests, to the right, (B, 42)."""
+    return _play(env, arm.astype(np.float64), 1.0 - arm)
+
+
+def _play(env: "BatchEnv", first: Array, second: Array) -> Array:
+    """Return the actions of the stroke to the right, each arm's times a factor (B,), (B, 42)."""
+    period, table = OCTOPUS_STROKES["right"]
+    level = np.clip(_wave(env, np.full(env.num_envs, period), np.array(table)), -1.0, 1.0)
+    actions = np.zeros((env.num_envs, N_ACTIVATIONS))
+    actions[:, STROKING], actions[:, STROKING + N_FUNCTIONS] = first[:, None] * level, second[:, None] * level
+    return actions
+
+
+def _wave(env: "BatchEnv", period: Array, table: Array) -> Array:
+    """Return offset + sine + cosine of the clock, from rows of a table (3, n) or (B, 3, n), (B, n)."""
+    phase = (2.0 * np.pi * env.elapsed * env.control_dt / period)[:, None]
+    return table[..., 0, :] + table[..., 1, :] * np.sin(phase) + table[..., 2, :] * np.cos(phase)
+
+
+def bend(env: "BatchEnv", arm: Array) -> Array:
+    """Return the actions that bend an arm more and more, (B, 42)."""
+    columns = BENDING + arm[:, None] * N_FUNCTIONS
+    level = np.take_along_axis(env.levels, columns, axis=1).mean(axis=1)
+    actions = np.zeros((env.num_envs, N_ACTIVATIONS))
+    np.put_along_axis(actions, columns, np.minimum(level + RAMP, 1.0)[:, None], axis=1)
+    return actions
+
+
+def carry(env: "BatchEnv", arm: Array) -> Array:
+    """Return the actions that carry the object home in an arm, by the way that leads there, (B, 42)."""
+    ahead, right = way_to_goal(env.situation())
+    # in the mirror, for the first arm
+    ahead = np.where(arm == 1, ahead, -ahead)
+    ways, periods, tables = (np.array(column) for column in zip(*CARRYING.values(), strict=True))
+    along = ahead[:, None] * ways[:, 0] + right[:, None] * ways[:, 1]
+    astray = np.abs(ahead[:, None] * ways[:, 1] - right[:, None] * ways[:, 0])
+    best = (along - 0.5 * astray).argmax(axis=1)
+    level = np.clip(_wave(env, periods[best], tables[best]), -1.0, 1.0)
+    actions = np.zeros((env.num_envs, N_ACTIVATIONS))
+    own, other = arm[:, None] * N_FUNCTIONS, (1 - arm)[:, None] * N_FUNCTIONS
+    np.put_along_axis(actions, BENDING + own, 1.0, axis=1)
+    np.put_along_axis(actions, STROKING + other, level[:, :6], axis=1)
+    np.put_along_axis(actions, LIFTING + own, level[:, 6:], axis=1)
+    return actions
