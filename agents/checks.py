@@ -57,12 +57,10 @@ def require_extra(extra: str) -> None:
 
 
 def environment_ids() -> list[str]:
-    """Return the ids that elastica_gym registers."""
-    import gymnasium
+    """Return the ids that agents are trained on here: those whose observation is one vector."""
+    from elastica_gym.envs import IDS
 
-    import elastica_gym  # noqa: F401  registers the environments
-
-    return [env_id for env_id in gymnasium.registry if env_id.startswith("elastica_gym/")]
+    return list(IDS)
 
 
 def make_folder(folder: Path) -> Path:

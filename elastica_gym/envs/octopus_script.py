@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..cosserat.model import Array
+from ..cosserat.model import Array, Index
 from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
 from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
 from .handling import now
@@ -114,7 +114,7 @@ def walk(env: "BatchEnv", bearing: Array) -> Array:
     return _play(env, first, second)
 
 
-def turn(env: "BatchEnv", arm: Array) -> Array:
+def turn(env: "BatchEnv", arm: Index) -> Array:
     """Return the actions of a turn that brings an arm, which rests, to the right, (B, 42)."""
     return _play(env, arm.astype(np.float64), 1.0 - arm)
 
@@ -134,7 +134,7 @@ def _wave(env: "BatchEnv", period: Array, table: Array) -> Array:
     return table[..., 0, :] + table[..., 1, :] * np.sin(phase) + table[..., 2, :] * np.cos(phase)
 
 
-def bend(env: "BatchEnv", arm: Array) -> Array:
+def bend(env: "BatchEnv", arm: Index) -> Array:
     """Return the actions that bend an arm more and more, (B, 42)."""
     columns = BENDING + arm[:, None] * N_FUNCTIONS
     level = np.take_along_axis(env.levels, columns, axis=1).mean(axis=1)
@@ -143,7 +143,7 @@ def bend(env: "BatchEnv", arm: Array) -> Array:
     return actions
 
 
-def carry(env: "BatchEnv", arm: Array) -> Array:
+def carry(env: "BatchEnv", arm: Index) -> Array:
     """Return the actions that carry the object home in an arm, by the way that leads there, (B, 42)."""
     ahead, right = way_to_goal(env.situation())
     # in the mirror, for the first arm

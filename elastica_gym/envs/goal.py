@@ -1,0 +1,188 @@
+"""SnakeReachGoal and OctopusReachGoal: bring the head to a place; goal-conditioned, for hindsight experience replay.
+
+Description
+-----------
+The animals and starts of `elastica_gym.envs.snake_reach` and `elastica_gym.envs.octopus_reach`, as environments
+whose goal can be changed afterwards (Andrychowicz et al. 2017): an episode that went elsewhere is a good one for
+the place where it went. The snake's goal is its target, the octopus's the place where its object stands at the start.
+
+Action
+------
+``Box(-1, 1, (42,), float32)``, as there.
+
+Observation
+-----------
+``Dict(observation, achieved_goal, desired_goal)`` of ``Box(float32)``:
+
+- ``observation``: what those tasks observe without the numbers about the goal (of the octopus, 0 to 205, of the snake,
+  0 to 156), and last the heading, which they do without: a unit vector along x and z of the lab, -1 to 1.
+- ``achieved_goal``: the head's place on the ground, as x and z of the lab, in body lengths, -4 to 4.
+- ``desired_goal``: the place where it should be, likewise.
+
+Nothing in ``observation`` depends on the goal.
+
+Rewards
+-------
+1 where the head is at the goal, within 0.05 body lengths for the snake; for the octopus within 0.225 m, where the
+surfaces of its head and of the object are no more than 0.05 m apart; else 0. Of any goals, (..., 2), this is what
+``compute_reward(achieved_goal, desired_goal, info)`` tells, which does not look at the info. A failure ends the
+episode, and costs that there is no more reward.
+
+Episode end
+-----------
+Terminated at the goal; where the octopus topples; and where the simulation diverges. Truncated after 20 s for the snake
+and 10 s for the octopus.
+
+Arguments
+---------
+Those of `elastica_gym.envs.BatchEnv`, but for ``weights``; ``spread`` as there.
+
+Version history
+---------------
+v0: the first.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from gymnasium.spaces import Box, Dict
+from gymnasium.vector.utils import batch_space
+from numpy.typing import ArrayLike, NDArray
+
+from ..cosserat.model import Array
+from . import octopus_reach, snake_reach
+from .batch import BatchEnv
+from .single import SingleEnv
+from .task import Mask, Situation, Task
+
+Parts = dict[str, NDArray[np.float32]]
+TOLERANCE = {"snake": 0.05, "octopus": 0.225}
+"""By body, distance of the head from the goal that is near enough, in body lengths"""
+
+
+def draw_snakes_goal(rng: np.random.Generator, situation: Situation) -> Array:
+    """Return a target as in SnakeReach, (x, z), and the head's way to it [m], (3,)."""
+    return snake_reach.draw_goal(rng, situation)
+
+
+def draw_octopuses_goal(rng: np.random.Generator, situation: Situation) -> Array:
+    """Return where the object stands, (x, z), and the head's way there [m], (3,)."""
+    place, head = situation.pose.objects[0, 0, [0, 2]], situation.pose.head[0, [0, 2]]
+    return np.array([*place, np.hypot(*(place - head))])
+
+
+def see_goal(situation: Situation) -> Array:
+    """Return the heading, the head's place and the goal, each as x and z of the lab, (B, 6)."""
+    s, length = situation, situation.body.senses.length
+    return np.concatenate([s.pose.heading, s.pose.head[:, [0, 2]] / length, s.goal[:, :2] / length], axis=1)
+
+
+def is_near(achieved: ArrayLike, desired: ArrayLike, tolerance: float) -> Mask:
+    """Return whether places (..., 2) are no further than a tolerance from others, in single precision, (...) bool."""
+    way = np.asarray(achieved, dtype=np.float32) - np.asarray(desired, dtype=np.float32)
+    return way[..., 0] * way[..., 0] + way[..., 1] * way[..., 1] <= np.float32(tolerance * tolerance)
+
+
+def succeeds(situation: Situation) -> Mask:
+    """Return whether the head is at the goal, as one who sees them can tell, (B,) bool."""
+    seen = np.clip(see_goal(situation), -4.0, 4.0).astype(np.float32)
+    return is_near(seen[:, 2:4], seen[:, 4:], TOLERANCE[situation.body.name])
+
+
+def reached(situation: Situation) -> Array:
+    """Return 1 where the head is at the goal, (B,)."""
+    return succeeds(situation).astype(np.float64)
+
+
+def distance(situation: Situation) -> Array:
+    """Return how much nearer the head is to the goal than at reset [m], (B,)."""
+    goal, head = situation.goal, situation.pose.head
+    x, z = goal[:, 0] - head[:, 0], goal[:, 1] - head[:, 2]
+    return goal[:, 2] - np.sqrt(x * x + z * z)
+
+
+def _flat(task: Task) -> dict[str, Any]:
+    """Return what the flat forms of both tasks share: all that is seen is in one row, the two places last."""
+    return dict(
+        name=f"{task.name}Goal", goal_size=3, goal_bounds=((-1.0, 1.0),) * 2 + ((-4.0, 4.0),) * 4,
+        goal_names=("heading/x", "heading/z", "achieved/x", "achieved/z", "desired/x", "desired/z"), see_goal=see_goal,
+        reward_terms={"reached": reached}, reward_weights={"reached": 1.0, "diverged": 0.0}, distance=distance,
+        succeeds=succeeds, ends_on_success=True, target=snake_reach.target,
+    )  # fmt: skip
+
+
+GOAL_TASKS = {
+    task.name: task
+    for task in (
+        replace(snake_reach.TASK, **_flat(snake_reach.TASK), draw_goal=draw_snakes_goal),
+        replace(octopus_reach.TASK, **_flat(octopus_reach.TASK), draw_goal=draw_octopuses_goal),
+    )
+}
+
+
+def _parts(flat: NDArray[np.float32]) -> Parts:
+    """Return observation, achieved and desired goal of flat observations (..., d)."""
+    return {
+        "observation": flat[..., :-4].copy(),
+        "achieved_goal": flat[..., -4:-2].copy(),
+        "desired_goal": flat[..., -2:].copy(),
+    }
+
+
+def _space(flat: Box) -> Dict:
+    low, high = _parts(flat.low), _parts(flat.high)
+    return Dict({name: Box(low[name], high[name], dtype=np.float32) for name in low})
+
+
+class GoalBatchEnv(BatchEnv):
+    """A batch of animals, each with a goal that can be changed afterwards.
+
+    Made by ``gymnasium.make_vec("elastica_gym/<Name>ReachGoal-v0", num_envs=...)``. Observations are a dict of
+    arrays; that of an episode's last step in ``final_obs`` is an array of dicts, as in Gymnasium's own batches.
+    """
+
+    def _make_spaces(self) -> None:
+        super()._make_spaces()
+        self.single_observation_space = _space(self.single_observation_space)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+
+    def reset(self, *, seed=None, options=None):  # type: ignore[no-untyped-def, override]
+        """Start new episodes; see `BatchEnv.reset`."""
+        observations, info = super().reset(seed=seed, options=options)
+        return _parts(observations), info
+
+    def step(self, actions: Array):  # type: ignore[no-untyped-def, override]
+        """Advance by one control step; see `BatchEnv.step`."""
+        observations, *rest, info = super().step(actions)
+        if "final_obs" in info:
+            flat, info["final_obs"] = info["final_obs"], np.full(self.num_envs, None, dtype=object)
+            for i in np.flatnonzero(info["_final_obs"]):
+                info["final_obs"][i] = _parts(flat[i])
+        return _parts(observations), *rest, info
+
+    def compute_reward(self, achieved_goal: ArrayLike, desired_goal: ArrayLike, info: Any) -> Array:
+        """Return the rewards of achieved goals when others were desired, (..., 2) to (...)."""
+        return is_near(achieved_goal, desired_goal, TOLERANCE[self.body.name]).astype(np.float64)
+
+
+class GoalEnv(SingleEnv):
+    """One animal with a goal that can be changed afterwards; what ``gymnasium.make`` returns."""
+
+    def __init__(self, task: Task, **kwargs: Any) -> None:
+        super().__init__(task, **kwargs)
+        self.observation_space = _space(self.batch.single_observation_space)
+
+    def reset(self, *, seed=None, options=None):  # type: ignore[no-untyped-def, override]
+        """Start a new episode; see `BatchEnv.reset`."""
+        observation, info = super().reset(seed=seed, options=options)
+        return _parts(observation), info
+
+    def step(self, action: Array):  # type: ignore[no-untyped-def, override]
+        """Advance by one control step; see `BatchEnv.step`."""
+        observation, *rest = super().step(action)
+        return _parts(observation), *rest
+
+    def compute_reward(self, achieved_goal: ArrayLike, desired_goal: ArrayLike, info: Any) -> Array:
+        """Return the rewards of achieved goals when others were desired, (..., 2) to (...)."""
+        return is_near(achieved_goal, desired_goal, TOLERANCE[self.batch.body.name]).astype(np.float64)
