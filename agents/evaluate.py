@@ -18,6 +18,7 @@ from agents.checks import (
     require_extra,
     run_command,
 )
+from agents.seeds import TEST
 
 if TYPE_CHECKING:
     from agents.policies import Policy
@@ -186,11 +187,11 @@ class EvaluateArguments:
     env: str | None = None
     """Environment id; by default the one that the run was trained on."""
     spread: str | None = None
-    """How starts are drawn, for tasks that know several: of OctopusReach arc or anywhere."""
+    """How starts are drawn, for tasks that know several: of OctopusReach arc, anywhere or default."""
     episodes: int = 50
     """How many episodes."""
-    seed: int = 1
-    """Seed of the first episode."""
+    seed: int = TEST.start
+    """Seed of the first episode; by default one that nothing is trained or chosen with (`agents.seeds`)."""
     record: Path | None = None
     """Folder for a rerun recording of the first episode."""
     json: Path | None = None

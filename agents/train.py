@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from agents.checks import BadInputError, choose, environment_ids, fail, make_folder, require_extra, run_command
+from agents.seeds import TRAINING, VALIDATION
 
 VERSIONS = ("elastica-gym", "stable-baselines3", "torch", "numpy", "numba", "gymnasium")
 
@@ -24,7 +25,7 @@ class TrainArguments:
     algo: str = "ppo"
     """Algorithm: ppo or sac."""
     seed: int = 0
-    """Seed of networks and exploration; environment i has seed + i."""
+    """Seed of networks and exploration, below 1,000,000; environment i has seed + i."""
     steps: int | None = None
     """Environment steps to train for; by default n_timesteps of the configuration, or no limit if minutes are given."""
     minutes: float | None = None
@@ -41,8 +42,8 @@ class TrainArguments:
     """Evaluation points besides the one at the start, spread evenly over the budget; 0 for none at all."""
     evaluation_episodes: int = 20
     """Episodes of each evaluation."""
-    evaluation_seed: int = 1_000_000
-    """Seed of an evaluation's first episode."""
+    evaluation_seed: int = VALIDATION.start
+    """Seed of an evaluation's first episode, not one of those to train or to test with (`agents.seeds`)."""
     recordings: int = 1
     """Evaluation episodes recorded for rerun at the end."""
     checkpoint_minutes: float = 1.0
@@ -136,6 +137,9 @@ def _check(config: dict[str, Any]) -> None:
     for key, bound in lowest.items():
         if config[key] is not None and config[key] < bound:
             raise BadInputError(f"{key} must be at least {bound}, got {config[key]}")
+    for key, allowed in (("seed", TRAINING), ("evaluation_seed", VALIDATION)):
+        if config[key] not in allowed:
+            raise BadInputError(f"{key} must be from {allowed.start} to {allowed.stop - 1}, got {config[key]}")
 
 
 def _new_folder(arguments: TrainArguments) -> Path:

@@ -48,6 +48,8 @@ def test_unknown_hyperparameter():
         (("--set", "env_kwargs={sim_dt: 1.0}"), "The environment refuses its arguments: sim_dt"),
         (("--n-envs", "0"), "The environment refuses its arguments: num_envs"),
         (("--steps", "0"), "steps must be at least 1, got 0"),
+        (("--seed", "1000000"), "seed must be from 0 to 999999, got 1000000"),
+        (("--evaluation-seed", "2000000"), "evaluation_seed must be from 1000000 to 1999999, got 2000000"),
     ],
 )
 def test_values_that_cannot_be(option, message, tmp_path):
@@ -58,7 +60,7 @@ def test_values_that_cannot_be(option, message, tmp_path):
 
 def test_unknown_spread():
     octopus = "--policy", "zero", "--env", "elastica_gym/OctopusReach-v0"
-    assert "'everywhere'; did you mean 'anywhere'? Valid: anywhere, arc." in refused(
+    assert "'everywhere'; did you mean 'anywhere'? Valid: anywhere, arc, default." in refused(
         "agents.evaluate", *octopus, "--spread", "everywhere"
     )
 
