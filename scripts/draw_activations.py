@@ -1,0 +1,85 @@
+"""Draw what each of the 21 activations of an arm does to an octopus.
+
+``python scripts/draw_activations.py`` writes docs/images/activations.png.
+"""
+
+import argparse
+from pathlib import Path
+
+import gymnasium
+import matplotlib
+import numpy as np
+
+import elastica_gym  # noqa: F401  registers the environments
+from elastica_gym.muscles import DIRECTIONS, LEVELS, N_ACTIVATIONS, N_ARMS, N_FUNCTIONS
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+ENV = "elastica_gym/OctopusReach-v0"
+SECONDS = 0.4
+EFFECT = {"normal": "bends sideways", "binormal": "lifts", "tangent": "twists"}
+COLORS = ("#eb7f26", "#2f7fb8", "#1f7a72")
+ARM = 1
+"""The second arm, which is after the head"""
+
+
+def main() -> None:
+    """Draw the figure and write it."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    default = Path(__file__).parents[1] / "docs" / "images" / "activations.png"
+    parser.add_argument("--output", type=Path, default=default, help="where to write the picture")
+    output: Path = parser.parse_args().output
+    figure = draw()
+    output.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(output, dpi=110)
+    print(f"wrote {output}")
+
+
+def draw() -> plt.Figure:
+    """Return a figure of an octopus at rest, and a moment after each activation of its second arm went to 1."""
+    shapes, rolls = play()
+    columns = [(level, i) for level, count in enumerate(LEVELS) for i in range(count)]
+    figure, axes = plt.subplots(len(DIRECTIONS), N_FUNCTIONS, figsize=(13, 4.6), layout="constrained")
+    for row, (direction, across) in enumerate(zip(DIRECTIONS, (2, 1, None), strict=True)):
+        for column, (level, i) in enumerate(columns):
+            ax, number = axes[row, column], (row * N_ARMS + ARM) * N_FUNCTIONS + column
+            if across is None:
+                for which, color in ((0, "0.7"), (1 + number, COLORS[level])):
+                    ax.plot(np.degrees(rolls[which] - rolls[0]), color=color)
+                ax.set_ylim(-200.0, 200.0)
+            else:
+                for which, color in ((0, "0.7"), (1 + number, COLORS[level])):
+                    along, other = shapes[which, 0], shapes[which, across]
+                    ax.plot(along, other, color=color, linewidth=2.5, solid_capstyle="round")
+                ax.set_aspect("equal", adjustable="datalim")
+            ax.set_xticks([])
+            ax.set_yticks([])
+            ax.set_title(f"{number}: level {level}.{i}", fontsize=8)
+        view = ("from above", "from the side", "turn about its axis, tip to tip")[row]
+        axes[row, 0].set_ylabel(f"{direction}: {EFFECT[direction]}\n({view})", fontsize=8)
+    return figure
+
+
+def play() -> tuple[np.ndarray, np.ndarray]:
+    """Return nodes ahead, up and to the right of the head [m], and the roll of elements [rad], with none and each."""
+    env = gymnasium.make_vec(ENV, num_envs=1 + N_ACTIVATIONS, spread="arc")
+    batch = env.unwrapped
+    batch.reset(seed=[0] * batch.num_envs)  # type: ignore[attr-defined]
+    actions = np.concatenate([np.zeros((1, N_ACTIVATIONS)), np.eye(N_ACTIVATIONS)])
+    for _ in range(round(SECONDS / batch.control_dt)):  # type: ignore[attr-defined]
+        batch.step(actions)
+    state, pose, body = batch.state, batch.pose, batch.body  # type: ignore[attr-defined]
+    first, n = int(body.model.first_slot[0]), int(body.model.n_elements[0])
+    x, y, z = (state.x[:, c, first : first + n + 1] - pose.head[:, c, None] for c in range(3))
+    hx, hz = pose.heading.T[..., None]
+    shapes = np.stack([x * hx + z * hz, y, z * hx - x * hz], axis=1)
+    # what the crown's element is turned by is the head's
+    up = state.Q[:, :2, 1, first : first + n]
+    rolls = np.unwrap(np.arctan2(up[:, 0], up[:, 1]), axis=1)
+    env.close()
+    return shapes, rolls
+
+
+if __name__ == "__main__":
+    main()

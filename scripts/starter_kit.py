@@ -1,0 +1,119 @@
+"""The starter kit: a policy to begin with, and what can be done with one.
+
+The policy below is complete: ``python scripts/score.py --policy scripts/starter_kit.py`` scores it. Copy the
+file and change it. ``python scripts/starter_kit.py`` goes through everything else, as the notebook beside it does:
+it draws what activations do, records and films the policy, trains one for some minutes, and scores both.
+"""
+
+import dataclasses
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+# memory: the file is run afresh for every episode
+steps = 0
+
+PERIOD = 0.37
+"""Of a stroke [s]"""
+CONTROL_DT = 0.05
+"""From one action to the next [s]"""
+SEEN_FORWARD, SEEN_RIGHT = 206, 207
+"""Where an observation has the direction from the head to the object"""
+FUNCTIONS = np.array([0, 1, 2, 14, 15, 16])
+"""Activations of the first arm: the three lowest functions that bend it sideways, and that lift it"""
+OFFSET = np.array([1.02, 1.57, 0.53, -0.74, -1.52, 0.51])
+SINE = np.array([1.4, -0.19, -0.7, 0.29, -0.95, 0.08])
+COSINE = np.array([-0.71, 0.46, -0.43, 1.71, -1.63, 1.62])
+"""A stroke of both arms with which the octopus walks to its right, found by CMA-ES"""
+
+
+def policy(observation: np.ndarray) -> np.ndarray:
+    """Walk to the right, and turn to keep the object there: both arms row, one of them less where it is off course.
+
+    Parameters
+    ----------
+    observation
+        (210,); the table is in `elastica_gym.envs.octopus_reach`.
+
+    Returns
+    -------
+    np.ndarray
+        Activations in [-1, 1], (42,): about the normal, the binormal and the tangent; of the first arm, then of the
+        second; seven each.
+    """
+    global steps
+    phase = 2.0 * np.pi * steps * CONTROL_DT / PERIOD
+    steps += 1
+    stroke = np.clip(OFFSET + SINE * np.sin(phase) + COSINE * np.cos(phase), -1.0, 1.0)
+    ahead = np.arctan2(observation[SEEN_FORWARD], observation[SEEN_RIGHT])
+    action = np.zeros(42)
+    # the second arm is ahead of the head, and the first one behind it
+    action[FUNCTIONS] = stroke * np.clip(1.0 + ahead, 0.0, 1.0)
+    action[FUNCTIONS + 7] = stroke * np.clip(1.0 - ahead, 0.0, 1.0)
+    return action
+
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@dataclasses.dataclass
+class Arguments:
+    """Go through the starter kit."""
+
+    env: str = "elastica_gym/OctopusFetch-v0"
+    """Environment id."""
+    spread: str = "default"
+    """Where the object stands in the recording: default, arc or anywhere."""
+    minutes: float = 5.0
+    """Time to train for."""
+    targets: int = 5
+    """Targets of the score on the arc, and again anywhere."""
+    seconds: float = 8.0
+    """Simulated time of the video [s]."""
+    out: Path = Path("runs/starter_kit")
+    """Folder of all that is written."""
+
+
+def main() -> None:
+    """Run the command line."""
+    import tyro
+
+    arguments = tyro.cli(Arguments)
+    out = arguments.out.resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    run(ROOT / "scripts" / "draw_activations.py", "--output", out / "activations.png")
+    show(arguments, out)
+    trained = out / "trained"
+    run("-m", "agents.train", "--env", arguments.env, "--algo", "ppo", "--minutes", arguments.minutes,
+        "--evaluations", 2, "--folder", trained)  # fmt: skip
+    for path in (Path(__file__), trained):
+        run(ROOT / "scripts" / "score.py", "--env", arguments.env, "--targets", arguments.targets, "--policy", path,
+            "--json", out / f"{path.stem}.json")  # fmt: skip
+
+
+def show(arguments: Arguments, out: Path) -> None:
+    """Record an episode of the policy for rerun, and make a video of its beginning."""
+    from elastica_gym.viz import render_frames, run_rollout, write_recording, write_video
+
+    def act(observations: np.ndarray, batch: Any) -> np.ndarray:
+        return policy(observations[0])[None]
+
+    rollout = run_rollout(arguments.env, act, seed=0, spread=arguments.spread, duration=arguments.seconds)
+    recording = write_recording(rollout, out / "rollout.rrd")
+    print(f"recorded {recording}: look at it with {sys.executable} {ROOT / 'scripts' / 'replay.py'} {recording}")
+    print(f"wrote {write_video(render_frames(rollout), out / 'rollout.mp4')}")
+
+
+def run(*command: Any) -> None:
+    """Run a command of the repository, and leave with its status if that is not 0."""
+    print(f"$ {' '.join(['python', *map(str, command)])}", flush=True)
+    status = subprocess.run([sys.executable, *map(str, command)], cwd=ROOT).returncode
+    if status != 0:
+        sys.exit(status)
+
+
+if __name__ == "__main__":
+    main()
