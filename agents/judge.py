@@ -14,6 +14,8 @@ from agents.trials import Sampler, run_trials, target_seeds
 
 INITIAL_STATES = 5
 """Episodes on the default target"""
+MOST_TARGETS = 1000
+"""Targets that are tried side by side"""
 KINDS = ("default", "arc", "anywhere")
 """Kinds of targets, which environments call their ``spread``"""
 
@@ -93,10 +95,11 @@ def _check(env_id: str, targets: int, target_seed: int, record: Path | None) -> 
     from elastica_gym.envs import TASKS
 
     choose("environment", env_id, environment_ids())
-    if not set(KINDS) <= set(TASKS[env_id.rpartition("/")[2].removesuffix("-v0")].starts):
+    task = TASKS.get(env_id.rpartition("/")[2].removesuffix("-v0"))
+    if task is None or not set(KINDS) <= set(task.starts):
         raise BadInputError(f"{env_id} has no object to fetch from {', '.join(KINDS)} targets.")
-    if targets < 1:
-        raise BadInputError(f"targets must be at least 1, got {targets}")
+    if not 1 <= targets <= MOST_TARGETS:
+        raise BadInputError(f"targets must be from 1 to {MOST_TARGETS}, got {targets}")
     if target_seed < 0:
         raise BadInputError(f"target-seed must not be negative, got {target_seed}")
     if record is not None and (message := missing_extra("viz")):

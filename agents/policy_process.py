@@ -6,6 +6,7 @@ as many episodes as it has numbers, and is answered by itself; observations (n, 
 
 import io
 import multiprocessing
+import signal
 import sys
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -96,6 +97,8 @@ class PolicyProcess:
 
 def _serve(pipe: Connection, path: Path) -> None:
     """Answer until the pipe is closed."""
+    # Ctrl-C is for who started it
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         policy = _load(path)
     except BadInputError as error:

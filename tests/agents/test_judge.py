@@ -17,12 +17,13 @@ from agents import policies
 from agents.checks import BadInputError
 from agents.judge import judge
 from agents.policy_process import PolicyError, PolicyProcess
-from agents.scoring import GOALS, grabbed, moved
+from agents.scoring import GOALS, goals_held, grabbed, moved
 from agents.trials import SAMPLE_TIME, TEST_SEEDS, run_trials, target_seeds
 from agents.vec_env import make_batch_vec_env
 from tests.agents.commands import ROOT, environment
 
 REACH = "elastica_gym/OctopusReach-v0"
+FETCH = "elastica_gym/OctopusFetch-v0"
 SHORT = dict(targets=1, target_seed=3, duration=0.3)
 SHAPE = (3, 42)
 
@@ -207,6 +208,18 @@ def test_samples_within_a_step_are_what_the_physics_does():
         np.testing.assert_allclose(coarse, fine, rtol=1e-5, atol=1e-5)
 
 
+def test_an_episode_depends_on_its_seed_alone(write):
+    path, episodes = write(RANDOM), []
+    for seeds, n_threads in (([5, 6, 7], 2), ([5, 6, 7], 1), ([6], 2)):
+        with PolicyProcess(path) as policy:
+            policy.begin(len(seeds))
+            episodes.append(run_trials(policy, REACH, seeds=seeds, watch=look_on, duration=0.2, n_threads=n_threads))
+    for together, on_one_thread, alone in zip(*episodes, strict=True):
+        np.testing.assert_array_equal(together, on_one_thread)
+        if together.ndim > 1:
+            np.testing.assert_array_equal(together[:, 1], alone[:, 0])
+
+
 def test_an_episode_is_over_when_the_animal_has_toppled():
     def topple(batch, sampler, infos):
         if batch.elapsed[0] == 1:
@@ -271,6 +284,28 @@ def test_zero_and_random_are_worth_nothing(write, text):
     assert [result[goal] for goal in (*GOALS, "general")] == [0.0] * 6
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("text", [ZERO, RANDOM])
+def test_zero_and_random_are_worth_nothing_in_whole_episodes(write, text):
+    result = judge(write(text), FETCH, targets=10, target_seed=2020)
+    assert result["total"] == 0.0 and result["error"] == ""
+
+
+@pytest.mark.slow
+def test_all_goals_can_be_held():
+    """By a script that looks at the whole state, in some of ten episodes."""
+    seen = {}
+
+    def watch(batch, sampler, infos):
+        seen["batch"] = batch
+
+    def script(observations, shape):
+        return seen["batch"].task.scripted_policy(seen["batch"])
+
+    samples = run_trials(script, FETCH, seeds=target_seeds(2020, 0, 10), watch=watch, spread="default")
+    assert goals_held(samples)[-1].any()
+
+
 def test_a_policy_that_breaks_late_is_worth_nothing(write):
     path = write(ZERO.replace("import", "calls = 0\nimport").replace(
         "    return", "    global calls\n    calls += 1\n    assert calls < 4\n    return"))  # fmt: skip
@@ -289,7 +324,8 @@ def test_a_run_is_judged(trained):
     [
         (dict(env_id="elastica_gym/OctopusRech-v0"), "did you mean 'elastica_gym/OctopusReach-v0'"),
         (dict(env_id="elastica_gym/SnakeReach-v0"), "has no object to fetch"),
-        (dict(targets=0), "targets must be at least 1, got 0"),
+        (dict(env_id="elastica_gym/OctopusCrawl-v0"), "has no object to fetch"),
+        (dict(targets=0), "targets must be from 1 to 1000, got 0"),
         (dict(target_seed=-1), "target-seed must not be negative, got -1"),
     ],
 )
