@@ -1,8 +1,8 @@
 """The starter kit: a policy to begin with, and what can be done with one.
 
 The policy below is complete: ``python scripts/score.py --policy scripts/starter_kit.py`` scores it. Copy the
-file and change it. ``python scripts/starter_kit.py`` goes through everything else, as the notebook beside it does:
-it draws what activations do, records and films the policy, trains one for some minutes, and scores both.
+file and change it. ``bash scripts/starter_kit.sh`` installs and goes through everything else, as the notebook beside
+it does: it draws what activations do, records and films the policy, trains one for some minutes, and scores both.
 """
 
 import dataclasses
@@ -67,7 +67,7 @@ class Arguments:
     """Environment id."""
     spread: str = "default"
     """Where the object stands in the recording: default, arc or anywhere."""
-    minutes: float = 5.0
+    minutes: float = 3.0
     """Time to train for."""
     targets: int = 5
     """Targets of the score on the arc, and again anywhere."""
@@ -104,7 +104,7 @@ def show(arguments: Arguments, out: Path) -> None:
     rollout = run_rollout(arguments.env, act, seed=0, spread=arguments.spread, duration=arguments.seconds)
     recording = write_recording(rollout, out / "rollout.rrd")
     print(f"recorded {recording}: look at it with {sys.executable} {ROOT / 'scripts' / 'replay.py'} {recording}")
-    print(f"wrote {write_video(render_frames(rollout), out / 'rollout.mp4')}")
+    print(f"wrote {write_video(render_frames(rollout, width=640, height=360), out / 'rollout.mp4')}")
 
 
 def run(*command: Any) -> None:
