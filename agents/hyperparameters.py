@@ -1,6 +1,7 @@
 """Hyperparameters from the files in ``configs/``, which rl_zoo3 reads as well."""
 
 import ast
+import importlib
 import inspect
 from pathlib import Path
 from typing import Any
@@ -85,9 +86,20 @@ def algorithm_arguments(values: dict[str, Any]) -> dict[str, Any]:
     for key in ("policy_kwargs", "replay_buffer_kwargs", "rollout_buffer_kwargs"):
         if isinstance(arguments.get(key), str):
             arguments[key] = literal(arguments[key])
+    if "." in str(arguments.get("policy")):
+        arguments["policy"] = policy_class(arguments["policy"])
     if isinstance(arguments.get("train_freq"), list):
         arguments["train_freq"] = tuple(arguments["train_freq"])
     return arguments
+
+
+def policy_class(name: str) -> Any:
+    """Return the class of a policy that is written with its module, as rl_zoo3 has it."""
+    module, _, attribute = name.rpartition(".")
+    try:
+        return getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError) as error:
+        raise BadInputError(f"There is no policy {name!r}: {error}") from error
 
 
 def normalize_arguments(values: dict[str, Any]) -> dict[str, Any] | None:

@@ -36,6 +36,8 @@ class TrainArguments:
     """Hyperparameters to go before the configuration's, as KEY=VALUE, such as learning_rate=0.0005 gamma=0.99."""
     config: Path | None = None
     """Another configuration file of the same format."""
+    start_from: Path | None = None
+    """Folder of a run of the same algorithm to begin with its networks, as of an easier task of the same animal."""
     threads: int = 2
     """Threads for the physics; results do not depend on them."""
     evaluations: int = 10
@@ -105,6 +107,7 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     values = hyperparameters.load(arguments.algo, arguments.env, config=arguments.config, overrides=overrides)
     config = {
         **{key: value for key, value in dataclasses.asdict(arguments).items() if key not in _NOT_IN_CONFIG},
+        "start_from": None if arguments.start_from is None else str(arguments.start_from.resolve()),
         "steps": int(values["n_timesteps"]) if arguments.steps is arguments.minutes is None else arguments.steps,
         "hyperparameters": values,
         "versions": {"python": platform.python_version(), **_versions()},

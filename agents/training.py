@@ -26,7 +26,7 @@ from agents.checkpoints import checkpoint_folders, last_whole_checkpoint, write_
 from agents.checks import BadInputError
 from agents.evaluate import evaluate, record
 from agents.hyperparameters import algorithm_arguments, algorithm_class, normalize_arguments
-from agents.policies import TrainedPolicy, load_model, load_normalization, use_one_thread
+from agents.policies import TrainedPolicy, load_model, load_normalization, load_run, use_one_thread
 from agents.progress import ProgressDisplay
 from agents.run_files import EVALUATIONS, METRICS, Table
 from agents.vec_env import BatchVecEnv, make_batch_vec_env
@@ -89,6 +89,8 @@ class Training:
         checkpoint = self._find_checkpoint() if resume else None
         saved: dict[str, Any] = {"seconds": 0.0, "table_sizes": (0, 0)}
         self.model = self._new_model() if checkpoint is None else self._load_model(checkpoint)
+        if checkpoint is None and config.get("start_from"):
+            self._take_over(Path(config["start_from"]))
         self.model.set_logger(Logger(folder=None, output_formats=[]))
         if checkpoint is not None:
             saved = self._load_state(checkpoint)
@@ -127,6 +129,21 @@ class Training:
             )
         except (TypeError, ValueError, AssertionError) as error:
             raise BadInputError(f"Stable-Baselines3 refuses the hyperparameters: {error}") from error
+
+    def _take_over(self, run: Path) -> None:
+        """Begin with the networks of another run and with its statistics of observations; explore as if new."""
+        other, config = load_run(run)
+        weights = {name: value for name, value in other.model.policy.state_dict().items() if name != "log_std"}
+        try:
+            absent, unknown = self.model.policy.load_state_dict(weights, strict=False)
+        except RuntimeError as error:
+            absent, unknown = [str(error)], []
+        if set(absent) - {"log_std"} or unknown:
+            raise BadInputError(f"The networks of {run}, {config['algo']} on {config['env']}, do not fit: "
+                                f"{', '.join([*absent, *unknown])}")  # fmt: skip
+        normalize = self.model.get_vec_normalize_env()
+        if normalize is not None and other.normalization is not None:
+            normalize.obs_rms = other.normalization.obs_rms
 
     def _load_model(self, checkpoint: Path) -> Any:
         env: Any = self.adapter

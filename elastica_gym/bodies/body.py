@@ -13,6 +13,7 @@ from ..cosserat.kernels.vectors import column, plus, times, to_lab, vector
 from ..cosserat.model import Array, Index
 from ..cosserat.surroundings import Cylinder
 from ..muscles import N_ACTIVATIONS, Muscles, couple_matrix
+from .mirror import Mirror
 
 
 class Senses(NamedTuple):
@@ -58,6 +59,8 @@ class Body:
     muscles : Muscles
     arms : tuple of str
         Names of the two arms.
+    mirror : Mirror
+        In which it is its own image.
     couples : Array
         Couple in the slots of the Model by activation [N m], (42, 3, L).
     senses : Senses
@@ -73,6 +76,7 @@ class Body:
     model: Model
     muscles: Muscles
     arms: tuple[str, str]
+    mirror: Mirror
     couples: Array
     senses: Senses
     sim_dt: float

@@ -19,6 +19,7 @@ from ..cosserat.model import Array
 from ..cosserat.surroundings import Contact, Cylinder, Plane
 from ..muscles import OCTOPUS
 from .body import Body, Senses, couples_of
+from .mirror import Mirror
 
 N_ELEMENTS = 120
 HEAD = (50, 70)
@@ -119,6 +120,7 @@ def octopus() -> Body:
     start = int(model.first_slot[0])
     return Body(
         name="octopus", rods=(rod,), cylinders=(thing,), model=model, muscles=OCTOPUS, arms=("first", "second"),
+        mirror=Mirror(across="forward", arms=("first", "second")),
         couples=couples_of(OCTOPUS, rod, model), sim_dt=SIM_DT,
         settling=1.0, senses=_senses(start, float(rod.nodal_mass.sum() * GRAVITY)),
     )  # fmt: skip

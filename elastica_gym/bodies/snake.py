@@ -17,6 +17,7 @@ from ..cosserat import Rod, build_model, stable_time_step
 from ..cosserat.surroundings import Plane
 from ..muscles import SNAKE
 from .body import Body, Senses, couples_of
+from .mirror import Mirror
 
 LENGTH = 0.35
 RADIUS = 0.011 * LENGTH
@@ -66,6 +67,7 @@ def snake(n_elements: int = 50) -> Body:
     start = int(model.first_slot[0])
     return Body(
         name="snake", rods=(rod,), model=model, muscles=SNAKE, arms=("front", "rear"),
+        mirror=Mirror(across="right"),
         couples=couples_of(SNAKE, rod, model), senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
         sim_dt=min(SIM_DT, 0.94 * stable_time_step(rod)),
     )  # fmt: skip

@@ -57,7 +57,7 @@ from .joint import (
     SelfContact,
     SphericalJoint,
 )
-from .kernels.step import advance
+from .kernels.step import advance, advance_queue
 from .model import Control, Model, State, make_control, make_state
 from .modules import BaseSystemCollection, CallBacks, Connections, Constraints, Contact, Damping, Forcing
 from .restart import load_state, save_state
@@ -137,6 +137,7 @@ __all__ = [
     "UniformTorques",
     "Wave",
     "advance",
+    "advance_queue",
     "at_rest",
     "build_model",
     "compute_link",

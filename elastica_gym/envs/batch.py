@@ -1,7 +1,6 @@
 """The batched environment: all logic, over a leading environment axis."""
 
 import functools
-import itertools
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
@@ -16,7 +15,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ..bodies.body import Pose, activate, feel, make_pose
-from ..cosserat import advance, at_rest
+from ..cosserat import advance, advance_queue, at_rest
 from ..cosserat.model import Array, Index
 from ..cosserat.rod import require_positive, require_stable
 from ..muscles import N_ACTIVATIONS, activation_names
@@ -260,14 +259,13 @@ class BatchEnv(VectorEnv):
 
     def _advance_physics(self) -> None:
         """Run all substeps of a control step, the environments shared among threads."""
-        n_threads = min(self.n_threads, self.num_envs)
-        borders = [self.num_envs * t // n_threads for t in range(n_threads + 1)]
-        spans = list(itertools.pairwise(borders))
-        batch = self.body.model, self.state, self.control
-        pool = _pool(os.getpid(), n_threads - 1)
-        futures = [pool.submit(advance, *batch, *span, self.sim_dt, self.n_substeps) for span in spans[1:]]
+        n_helpers = min(self.n_threads, self.num_envs) - 1
+        queue = np.zeros(1, dtype=np.int64)
+        work = self.body.model, self.state, self.control, queue, self.num_envs, self.sim_dt, self.n_substeps
+        pool = _pool(os.getpid(), n_helpers)
+        futures = [pool.submit(advance_queue, *work) for _ in range(n_helpers)]
         try:
-            advance(*batch, *spans[0], self.sim_dt, self.n_substeps)
+            advance_queue(*work)
         finally:
             # also after Ctrl-C: nobody writes State when this returns
             wait(futures)

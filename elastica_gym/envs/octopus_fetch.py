@@ -76,9 +76,9 @@ Starting state
 --------------
 All is drawn from the environment's own generator: the heading, uniform; the shape, the resting one bent
 sideways by three sine waves of couple, whose curvature at the tips has normal amplitudes of 0.7, 0.35 and 0.175
-1/m; a horizontal velocity with a standard deviation of 0.02 m/s; and the object, upright, at 0.4 m from the
-head, its bearing uniform from straight ahead to straight to the right (``spread="arc"``), straight to the right
-(``"default"``), at 0.4 to 0.8 m and any bearing (``"anywhere"``), drawn again where it would stand in the
+1/m; a horizontal velocity with a standard deviation of 0.02 m/s; and the object, upright, at 0.4 m straight to
+the right of the head (``spread="default"``), at 0.4 m and a bearing uniform from straight ahead to straight to
+the right (``"arc"``), at 0.4 to 0.8 m and any bearing (``"anywhere"``), drawn again where it would stand in the
 animal. Muscles are at rest.
 
 Episode end

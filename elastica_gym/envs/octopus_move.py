@@ -69,9 +69,9 @@ Starting state
 --------------
 All is drawn from the environment's own generator: the heading, uniform; the shape, the resting one bent
 sideways by three sine waves of couple, whose curvature at the tips has normal amplitudes of 0.7, 0.35 and 0.175
-1/m; a horizontal velocity with a standard deviation of 0.02 m/s; and the object, upright, at 0.4 m from the
-head, its bearing uniform from straight ahead to straight to the right (``spread="arc"``), straight to the right
-(``"default"``), at 0.4 to 0.8 m and any bearing (``"anywhere"``), drawn again where it would stand in the
+1/m; a horizontal velocity with a standard deviation of 0.02 m/s; and the object, upright, at 0.4 m straight to
+the right of the head (``spread="default"``), at 0.4 m and a bearing uniform from straight ahead to straight to
+the right (``"arc"``), at 0.4 to 0.8 m and any bearing (``"anywhere"``), drawn again where it would stand in the
 animal. Muscles are at rest.
 
 Episode end
@@ -84,7 +84,7 @@ is faster than 50 m/s: then the last sound observation is returned.
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("arc", "anywhere" or "default").
+``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("default", "arc" or "anywhere").
 
 Version history
 ---------------
@@ -148,7 +148,7 @@ TASK = Task(
     name="OctopusMove",
     make_body=octopus,
     duration=10.0,
-    starts=OBJECT_STARTS,
+    starts={name: OBJECT_STARTS[name] for name in ("default", "arc", "anywhere")},
     goal_size=GOAL_SIZE,
     draw_goal=draw_goal,
     goal_names=("goal/forward", "goal/right", "home/forward", "home/right"),

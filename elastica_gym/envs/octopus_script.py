@@ -13,7 +13,7 @@ import numpy as np
 from ..cosserat.model import Array, Index
 from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
 from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
-from .handling import now
+from .handling import Handling, now
 from .task import Mask, in_heading_frame, way_to_goal
 
 if TYPE_CHECKING:
@@ -33,12 +33,15 @@ CLOSE = (0.32, 0.34)
 """Distance from the head below which it turns rather than walks: where the object is sideways, and elsewhere [m]"""
 BEHIND = -0.12
 """How far the object may be to the left for that [m]"""
-BEND = ((0.17, 0.32), 0.06)
-"""Where the arm begins to bend: how far ahead, and at most how far from the line along which it takes hold [m]"""
+BEND = ((0.15, 0.32), -0.08, 0.03)
+"""Where the arm begins to bend: how far ahead, at least how far to the right, and how near to its inner half [m]"""
 REACH = ((0.1, 0.4), (-0.15, 0.2))
 """Where it goes on bending: how far ahead and to the right [m]"""
-RAMP = 0.15
-"""Growth of the activation that bends it, a control step"""
+RAMP = 0.064
+"""By how much the activation that bends it is ahead of what the muscles have reached: twice as much, and it fells what
+it should hold"""
+EMPTY = (0.9, 1.0)
+"""Activation from which on an arm that spans no more than this has missed, and lets go [1, rad]"""
 
 CARRYING = {
     "ahead": ((0.41, 0.16), 0.25, (
@@ -87,23 +90,24 @@ def fetch(env: "BatchEnv") -> Array:
     actions = walk(env, bearing)
     for chosen, play in (
         (is_close & (right > BEHIND), turn),
-        (is_close & (right > BEHIND) & _is_in_the_bend(np.abs(ahead), right, bent), bend),
+        (is_close & (right > BEHIND) & _is_in_the_bend(h, np.abs(ahead), right, bent), bend),
         (h.grabbed == 1.0, carry),
     ):
         actions[chosen] = play(env, arm)[chosen]
     return actions
 
 
-def _is_in_the_bend(ahead: Array, right: Array, bent: Array) -> Mask:
+def _is_in_the_bend(h: Handling, ahead: Array, right: Array, bent: Array) -> Mask:
     """Return whether an arm, bent to levels (B, 7), has the object where it should begin or go on to bend, (B,)."""
     level = bent.mean(axis=1)
-    (nearest, furthest), aside = BEND
-    begins = (ahead > nearest) & (ahead < furthest) & (np.abs(right - 0.19 + 0.6 * ahead) < aside)
+    (nearest, furthest), left, gap = BEND
+    begins = (ahead > nearest) & (ahead < furthest) & (right > left) & (h.reach < gap)
     begins &= np.abs(bent).max(axis=1) < 0.2
     (nearest, furthest), (left, rightmost) = REACH
     goes_on = (ahead > nearest) & (ahead < furthest) & (right > left) & (right < rightmost)
     # bent as a whole, not by a stroke
-    goes_on &= (level > 0.04) & (bent.max(axis=1) - bent.min(axis=1) < 0.02)
+    goes_on &= (level > 0.03) & (bent.max(axis=1) - bent.min(axis=1) < 0.02)
+    goes_on &= (level < EMPTY[0]) | (h.span > EMPTY[1])
     return begins | goes_on
 
 

@@ -71,6 +71,20 @@ def test_curves_of_several_runs(ppo_run, tmp_path):
     assert REACH in run("agents.plot_curves", "--env", REACH, "--runs", ppo_run, status=2)
 
 
+def test_a_run_starts_from_the_networks_of_another(ppo_run, tmp_path):
+    # a step of no length: what is saved is what it began with
+    run("agents.train", "--env", FORWARD, "--steps", 40, "--start-from", ppo_run, "--folder", tmp_path / "next",
+        *SMALL_PPO, "learning_rate=0.0")  # fmt: skip
+    begun, theirs = (load_run(folder)[0] for folder in (tmp_path / "next", ppo_run))
+    weights = begun.model.policy.state_dict()
+    for name, value in theirs.model.policy.state_dict().items():
+        assert torch.equal(value, weights[name]) == (name != "log_std"), name
+    assert begun.normalization.obs_rms.count > theirs.normalization.obs_rms.count
+    output = run("agents.train", "--env", REACH, "--steps", 40, "--start-from", ppo_run, "--folder",
+                 tmp_path / "misfit", *SMALL_PPO, status=2)  # fmt: skip
+    assert "do not fit" in output and FORWARD in output
+
+
 def test_a_minute_is_a_budget(tmp_path):
     folder = tmp_path / "run"
     run("agents.train", "--minutes", 0.1, "--evaluations", 0, "--folder", folder, *SMALL_PPO, "learning_rate=lin_0.001")

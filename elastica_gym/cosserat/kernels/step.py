@@ -4,7 +4,7 @@ from math import exp
 
 import numpy as np
 
-from ..model import BLOCK
+from ..model import BLOCK, Control, Model, State
 from .bodies import drift_bodies, kick_bodies, orthonormalise_bodies, weigh_bodies
 from .compiler import entry, inner
 from .curvature import bending, logarithm, relative_rotation
@@ -13,6 +13,7 @@ from .dynamics import dynamics
 from .kinematics import kinematics, orthonormalise
 from .loads import balance, external, viscosity, wave
 from .plane import slide, slip, stick, to_nodes, touch
+from .queue import take
 from .rods import rods_on_rods
 from .strains import strains, stretch
 
@@ -139,13 +140,14 @@ def kick(model, state, i, n, dt):
 
 
 @entry
-def advance(model, state, control, first, last, dt, n_substeps):
-    """Advance environments first to last - 1 by n_substeps of position Verlet: half drift, kick, half drift.
+def advance_queue(model, state, control, queue, last, dt, n_substeps):
+    """Advance the environments from ``queue[0]`` to last - 1, as `advance` does, together with other threads.
 
-    The half drifts of consecutive steps are one, within a call.
+    Who is done with an environment takes the next one: CPUs of a shared machine are not equally fast.
     """
     n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
-    for i in range(first, last):
+    i: int = take(queue)  # type: ignore[call-arg] # the context is Numba's to give
+    while i < last:
         for k in range(model.mass.size):
             state.decay[i, k] = exp(-model.damping_rate[k] * dt)
         start = state.time[i]
@@ -158,8 +160,18 @@ def advance(model, state, control, first, last, dt, n_substeps):
             ground(model, state, i, n, dt)
             kick(model, state, i, n, dt)
             drift(model, state, i, n, dt if step < n_substeps - 1 else 0.5 * dt)
-            state.step[i] += 1
-            if state.step[i] % ORTHONORMALISE_EVERY == 0:
+            if (state.step[i] + step + 1) % ORTHONORMALISE_EVERY == 0:
                 orthonormalise(n, matrix(state.Q[i]))
                 orthonormalise_bodies(state.body_Q[i])
+        # once a call: what neighbours write shares a cache line with what other threads read
+        state.step[i] += n_substeps
         state.time[i] = start + n_substeps * dt
+        i = take(queue)
+
+
+def advance(model: Model, state: State, control: Control, first: int, last: int, dt: float, n_substeps: int) -> None:
+    """Advance environments first to last - 1 by n_substeps of position Verlet: half drift, kick, half drift.
+
+    The half drifts of consecutive steps are one, within a call.
+    """
+    advance_queue(model, state, control, np.array([first]), last, dt, n_substeps)

@@ -1,0 +1,75 @@
+"""A policy for an animal that is its own mirror image: what it learns on one side it can do on the other."""
+
+from typing import Any
+
+import gymnasium
+import torch
+from gymnasium import spaces
+from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
+from torch import Tensor, nn
+
+from elastica_gym.bodies.mirror import Mirror
+from elastica_gym.muscles import activation_names
+
+
+class _Image(nn.Module):
+    """Turns numbers that describe an animal into those of its mirror image."""
+
+    index: Tensor
+    sign: Tensor
+
+    def __init__(self, mirror: Mirror, names: tuple[str, ...]):
+        super().__init__()
+        index, sign = mirror.image(names)
+        self.register_buffer("index", torch.as_tensor(index), persistent=False)
+        self.register_buffer("sign", torch.as_tensor(sign, dtype=torch.float32), persistent=False)
+
+    def forward(self, values: Tensor) -> Tensor:
+        return values[..., self.index] * self.sign
+
+
+class _BothImages(BaseFeaturesExtractor):
+    """What is seen, and its mirror image, (B, 2, d): the layers after it see both, with the same weights."""
+
+    def __init__(self, observation_space: spaces.Box, image: nn.Module):
+        super().__init__(observation_space, features_dim=observation_space.shape[0])
+        self.image = image
+
+    def forward(self, observations: Tensor) -> Tensor:
+        return torch.stack([observations, self.image(observations)], dim=1)
+
+
+class _MeanOfImages(nn.Module):
+    """The mean of a layer's answers to what is seen and to its mirror image, mirrored back."""
+
+    def __init__(self, layer: nn.Module, image: nn.Module):
+        super().__init__()
+        self.layer, self.image = layer, image
+
+    def forward(self, latent: Tensor) -> Tensor:
+        answer = self.layer(latent)
+        return 0.5 * (answer[:, 0] + self.image(answer[:, 1]))
+
+
+class SymmetricPolicy(ActorCriticPolicy):
+    """Stable-Baselines3's ``MlpPolicy`` that does in the mirror image of a situation the mirror image of what it does.
+
+    With networks f and v and the mirror M, its mean action is (f(o) + M f(M o)) / 2 and its value (v(o) + v(M o)) / 2:
+    the symmetrised layers of van der Pol et al. 2020, "MDP homomorphic networks", for the group of one reflection.
+
+    Parameters
+    ----------
+    env_id : str
+        Id of the environment, which knows what its observations are and where its animal's mirror is.
+    """
+
+    def __init__(self, *args: Any, env_id: str, **kwargs: Any):
+        envs: Any = gymnasium.make_vec(env_id, num_envs=1).unwrapped
+        seen = _Image(envs.body.mirror, envs.observation_names)
+        done = _Image(envs.body.mirror, activation_names(envs.body.arms))
+        kwargs |= {"features_extractor_class": _BothImages, "features_extractor_kwargs": {"image": seen}}
+        super().__init__(*args, **kwargs)
+        # the optimiser has the layers' weights already, and they stay the same
+        self.action_net = _MeanOfImages(self.action_net, done)
+        self.value_net = _MeanOfImages(self.value_net, nn.Identity())  # type: ignore[assignment]

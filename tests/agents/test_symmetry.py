@@ -1,0 +1,90 @@
+"""Animals are their own mirror images, and so is what their policies do."""
+
+import gymnasium
+import numpy as np
+import pytest
+import torch
+from numpy.testing import assert_allclose
+
+import elastica_gym  # noqa: F401
+from agents.symmetry import SymmetricPolicy
+from elastica_gym.muscles import activation_names
+
+IDS = ("elastica_gym/OctopusCrawl-v0", "elastica_gym/SnakeForward-v0")
+
+
+def mirrored(envs, values, names=None):
+    index, sign = envs.body.mirror.image(names or activation_names(envs.body.arms))
+    return values[..., index] * sign
+
+
+def write_mirror_image(envs):
+    """Make the second environment the mirror image of the first, in a mirror through the head."""
+    s, body = envs.state, envs.body
+    first, n = int(body.model.first_slot[0]), int(body.model.n_elements[0])
+    nodes, elements = slice(first, first + n + 1), slice(first, first + n)
+    is_swapped = bool(body.mirror.arms)
+    order = slice(None, None, -1 if is_swapped else 1)
+    hx, hz = envs.pose.heading[0]
+    normal = np.array([hx, 0.0, hz] if is_swapped else [-hz, 0.0, hx])
+    P = np.eye(3) - 2.0 * np.outer(normal, normal)
+    place = envs.pose.head[0]
+    s.x[1, :, nodes] = (P @ (s.x[0, :, nodes] - place[:, None]) + place[:, None])[:, order]
+    s.v[1, :, nodes] = (P @ s.v[0, :, nodes])[:, order]
+    # frames stay right-handed: counted from the other end, tangents turn round, and else the binormals
+    turned = np.array([1.0, 1.0, -1.0] if is_swapped else [1.0, -1.0, 1.0])
+    s.Q[1, :, :, elements] = turned[:, None, None] * np.einsum("ij,kjn->kin", P, s.Q[0, :, :, elements])[:, :, order]
+    s.w[1, :, elements] = -turned[:, None] * s.w[0, :, elements][:, order]
+    for name in ("radius", "length"):
+        getattr(s, name)[1, elements] = getattr(s, name)[0, elements][order]
+    # the object's axis stays its axis, so its normal turns round
+    turned = np.array([-1.0, 1.0, 1.0])
+    s.body_x[1], s.body_v[1] = (s.body_x[0] - place) @ P + place, s.body_v[0] @ P
+    s.body_Q[1], s.body_w[1] = turned[:, None] * (s.body_Q[0] @ P), -turned * s.body_w[0]
+    flat, at = P[::2, ::2], place[::2]
+    # a direction, and before it home or after it the point to go from
+    pairs = envs.goal[0].reshape(-1, 2)
+    is_direction = np.arange(len(pairs)) == (1 if is_swapped else 0)
+    envs.goal[1] = np.where(is_direction[:, None], pairs @ flat, (pairs - at) @ flat + at).ravel()
+
+
+@pytest.mark.parametrize("env_id", IDS)
+@pytest.mark.parametrize("seed", range(3))
+def test_what_happens_in_the_mirror_is_the_mirror_image(env_id, seed):
+    # short steps: friction amplifies rounding, tenfold in a millisecond
+    envs = gymnasium.make_vec(env_id, num_envs=2, control_dt=0.005).unwrapped
+    envs.reset(seed=seed)
+    write_mirror_image(envs)
+    action = np.random.default_rng(seed).uniform(-0.7, 0.7, 42)
+    # rolls are felt at the end of an element, which may be its beginning in the mirror
+    names = envs.observation_names
+    chosen = [i for i, name in enumerate(names) if not (envs.body.mirror.arms and name.startswith("roll/"))]
+    for _ in range(3):
+        seen, *_ = envs.step(np.stack([action, mirrored(envs, action)]))
+        assert_allclose(seen[1, chosen], mirrored(envs, seen[0], names)[chosen], rtol=0, atol=1e-5)
+
+
+@pytest.mark.parametrize("env_id", IDS)
+def test_twice_mirrored_is_as_before(env_id):
+    envs = gymnasium.make_vec(env_id, num_envs=1).unwrapped
+    names = envs.observation_names
+    values = np.arange(1.0, len(names) + 1.0)
+    assert not np.array_equal(mirrored(envs, values, names), values)
+    assert np.array_equal(mirrored(envs, mirrored(envs, values, names), names), values)
+
+
+@pytest.mark.parametrize("env_id", IDS)
+def test_the_policy_answers_in_the_mirror_with_the_mirror_image(env_id):
+    envs = gymnasium.make_vec(env_id, num_envs=5).unwrapped
+    torch.manual_seed(0)
+    policy = SymmetricPolicy(envs.single_observation_space, envs.single_action_space, lambda _: 1e-3, env_id=env_id,
+                             ortho_init=False)  # fmt: skip
+    seen = envs.reset(seed=0)[0]
+    there = mirrored(envs, seen, envs.observation_names).astype(np.float32)
+    actions, _ = policy.predict(seen, deterministic=True)
+    assert np.abs(actions).max() > 0.01
+    assert_allclose(policy.predict(there, deterministic=True)[0], mirrored(envs, actions), atol=1e-6)
+    with torch.no_grad():
+        values = [policy.predict_values(torch.as_tensor(each)).numpy() for each in (seen, there)]
+    assert np.abs(values[0]).max() > 1e-3
+    assert_allclose(values[0], values[1], atol=1e-5)
