@@ -1,0 +1,34 @@
+"""OctopusFetch by script: the octopus walks to its object, bends an arm around it and carries it home.
+
+It is `elastica_gym.envs.octopus_script`, whose tables CMA-ES has found, and adds what that is told by the
+environment: it counts the time, and sees whether the object is grabbed by where the goal is.
+"""
+
+import numpy as np
+
+from elastica_gym.envs.octopus_script import act, see
+
+CONTROL_DT = 0.05
+"""From one action to the next [s]"""
+THING, GOAL, HOME = [148, 150], [206, 207], [208, 209]
+"""Where an observation has, forward and right: the object, the direction to the goal, and the way home"""
+
+# memory: the file is run afresh for every episode
+steps = 0
+
+
+def policy(observation: np.ndarray) -> np.ndarray:
+    """Return the actions (42,) for an observation (210,) of `elastica_gym.envs.octopus_fetch`."""
+    global steps
+    time = steps * CONTROL_DT
+    steps += 1
+    return act(see(observation[None]), np.array([time]), np.array([has_grabbed(observation)]))[0]
+
+
+def has_grabbed(observation: np.ndarray) -> bool:
+    """Return whether the goal is home rather than the object."""
+    to_object, to_home = (
+        np.linalg.norm(observation[GOAL] - way / max(float(np.linalg.norm(way)), 1e-9))
+        for way in (observation[THING], observation[HOME])
+    )
+    return bool(to_home < to_object)
