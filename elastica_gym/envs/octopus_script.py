@@ -14,14 +14,14 @@ from ..bodies.octopus import BASE_RADIUS, OBJECT_LENGTH, OBJECT_RADIUS
 from ..cosserat.model import Array, Index
 from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
 from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
-from .handling import now
+from .handling import has_crawled, now
 from .task import Mask
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
 
 NODES, TOUCH, THING, AXIS = slice(0, 33), slice(137, 148), slice(148, 151), slice(151, 154)
-LEVELS, HOME = slice(161, 203), slice(208, 210)
+HEAD_SPEED, LEVELS, HOME = slice(48, 51), slice(161, 203), slice(208, 210)
 """Where observations have what the script sees, see `elastica_gym.envs.octopus_fetch`"""
 HEAD_NODE = 5
 """Which of the nodes seen is the head's centre"""
@@ -35,12 +35,19 @@ STEERING = 0.8
 """Angle off course at which one arm rests, and the other turns the animal [rad]"""
 LEAST = -0.5
 """What an arm does of the stroke, at least: the reverse of half of it"""
-CLOSE = (0.32, 0.34)
+CLOSE = (0.28, 0.3)
 """Distance from the head below which it turns rather than walks: where the object is sideways, and elsewhere [m]"""
 BEHIND = -0.12
 """How far the object may be to the left for that [m]"""
-BEND = ((0.15, 0.32), -0.08, 0.03)
-"""Where the arm begins to bend: how far ahead, at least how far to the right, and how near to its inner half [m]"""
+BOUT = (2, 4)
+"""Near the object, how many strokes it turns at a time, and with the rest after it, in which it looks"""
+NEAR = 0.13
+"""Gap between the object and an arm's inner half below which it does so [m]"""
+STILL = (0.1, 0.05)
+"""Largest activation and speed of the head at which it lies still [1, m/s]"""
+BEND = ((0.18, 0.34), ((0.24, 0.075), (0.34, 0.045)))
+"""Where an arm that lies still begins to bend: how far ahead, and up to there, how near to its inner half [m]"""
+LEFT = -0.04
 REACH = ((0.1, 0.4), (-0.15, 0.2))
 """Where it goes on bending: how far ahead and to the right [m]"""
 RAMP = 0.064
@@ -89,6 +96,8 @@ class Sight(NamedTuple):
     """How many parts of the body touch the object, (B,) int64"""
     levels: Array
     """Activations that the muscles have reached, (B, 42)"""
+    speed: Array
+    """Of the head [m/s], (B,)"""
     home: Array
     """Way from the head to its home, ahead and to the right [m], (B, 2)"""
 
@@ -102,7 +111,7 @@ def see(observations: Array) -> Sight:
     from_head = places - places[:, [HEAD_NODE]]
     return Sight(
         ahead=base[:, 0], right=base[:, 2], gap=_gap(from_head, base), touched=np.sum(o[:, TOUCH] > 0.0, axis=1),
-        levels=o[:, LEVELS], home=o[:, HOME],
+        levels=o[:, LEVELS], speed=np.linalg.norm(o[:, HEAD_SPEED], axis=1), home=o[:, HOME],
     )  # fmt: skip
 
 
@@ -120,10 +129,12 @@ def _gap(nodes: Array, base: Array) -> Array:
 
 def fetch(env: "BatchEnv") -> Array:
     """Return the actions of the script in a task that follows how the object is handled, (B, 42)."""
-    return act(see(env.observations), env.elapsed * env.control_dt, now(env.situation()).grabbed == 1.0)
+    situation = env.situation()
+    return act(see(env.observations), env.elapsed * env.control_dt, now(situation).grabbed == 1.0,
+               has_crawled(situation))
 
 
-def act(sight: Sight, time: Array, grabbed: Mask) -> Array:
+def act(sight: Sight, time: Array, grabbed: Mask, crawled: Mask) -> Array:
     """Return the actions of the script, (B, 42).
 
     Parameters
@@ -133,6 +144,8 @@ def act(sight: Sight, time: Array, grabbed: Mask) -> Array:
         Since the start of the episode [s], (B,).
     grabbed : Mask
         Whether an arm has grabbed the object, (B,) bool.
+    crawled : Mask
+        Whether the animal has been as far from home as it should, (B,) bool.
     """
     ahead, right = sight.ahead, sight.right
     bearing = np.arctan2(right, ahead)
@@ -142,9 +155,9 @@ def act(sight: Sight, time: Array, grabbed: Mask) -> Array:
     arm = np.where(ahead >= 0.0, 1, 0)
     actions = walk(time, bearing)
     for chosen, play in (
-        (is_close & (right > BEHIND), turn(time, arm)),
+        (is_close & (right > BEHIND), turn(sight, time, arm)),
         (is_close & (right > BEHIND) & _is_in_the_bend(sight, arm), bend(sight, arm)),
-        (grabbed, carry(sight, time, arm)),
+        (grabbed, carry(np.where(crawled[:, None], 1.0, -1.0) * sight.home, time, arm)),
     ):
         actions[chosen] = play[chosen]
     return actions
@@ -155,9 +168,11 @@ def _is_in_the_bend(sight: Sight, arm: Index) -> Mask:
     ahead, right = np.abs(sight.ahead), sight.right
     bent = np.take_along_axis(sight.levels, BENDING + arm[:, None] * N_FUNCTIONS, axis=1)
     level = bent.mean(axis=1)
-    (nearest, furthest), left, gap = BEND
-    begins = (ahead > nearest) & (ahead < furthest) & (right > left) & (sight.gap < gap)
-    begins &= np.abs(bent).max(axis=1) < 0.2
+    (nearest, furthest), ((middle, wide), (_, narrow)) = BEND
+    begins = (ahead > nearest) & (ahead < furthest) & (right > LEFT)
+    begins &= sight.gap < np.where(ahead < middle, wide, narrow)
+    most, fastest = STILL
+    begins &= (np.abs(sight.levels).max(axis=1) < most) & (sight.speed < fastest)
     (nearest, furthest), (left, rightmost) = REACH
     goes_on = (ahead > nearest) & (ahead < furthest) & (right > left) & (right < rightmost)
     # bent as a whole, not by a stroke
@@ -173,9 +188,11 @@ def walk(time: Array, bearing: Array) -> Array:
     return _play(time, first, second)
 
 
-def turn(time: Array, arm: Index) -> Array:
-    """Return the actions of a turn that brings an arm, which rests, to the right, (B, 42)."""
-    return _play(time, arm.astype(np.float64), 1.0 - arm)
+def turn(sight: Sight, time: Array, arm: Index) -> Array:
+    """Return the actions of a turn that brings an arm, which rests, to the right, in bouts where it is near, (B, 42)."""
+    strokes, bout = BOUT
+    is_turning = (sight.gap > NEAR) | (time / OCTOPUS_STROKES["right"][0] % bout < strokes)
+    return _play(time, is_turning * arm, is_turning * (1.0 - arm))
 
 
 def _play(time: Array, first: Array, second: Array) -> Array:
@@ -202,10 +219,10 @@ def bend(sight: Sight, arm: Index) -> Array:
     return actions
 
 
-def carry(sight: Sight, time: Array, arm: Index) -> Array:
-    """Return the actions that carry the object home in an arm, by the way that leads there, (B, 42)."""
+def carry(way: Array, time: Array, arm: Index) -> Array:
+    """Return the actions that carry the object some way (B, 2) [m] in an arm, (B, 42)."""
     # in the mirror, for the first arm
-    ahead, right = np.where(arm == 1, 1.0, -1.0) * sight.home[:, 0], sight.home[:, 1]
+    ahead, right = np.where(arm == 1, 1.0, -1.0) * way[:, 0], way[:, 1]
     ways, periods, tables = (np.array(column) for column in zip(*CARRYING.values(), strict=True))
     along = ahead[:, None] * ways[:, 0] + right[:, None] * ways[:, 1]
     astray = np.abs(ahead[:, None] * ways[:, 1] - right[:, None] * ways[:, 0])
