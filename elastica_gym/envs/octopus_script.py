@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .batch import BatchEnv
 
 NODES, TOUCH, THING, AXIS = slice(0, 33), slice(137, 148), slice(148, 151), slice(151, 154)
-HEAD_SPEED, LEVELS, HOME = slice(48, 51), slice(161, 203), slice(208, 210)
+VELOCITIES, LEVELS, HOME = slice(33, 66), slice(161, 203), slice(208, 210)
 """Where observations have what the script sees, see `elastica_gym.envs.octopus_fetch`"""
 HEAD_NODE = 5
 """Which of the nodes seen is the head's centre"""
@@ -35,7 +35,7 @@ STEERING = 0.8
 """Angle off course at which one arm rests, and the other turns the animal [rad]"""
 LEAST = -0.5
 """What an arm does of the stroke, at least: the reverse of half of it"""
-CLOSE = (0.28, 0.3)
+CLOSE = (0.28, 0.37)
 """Distance from the head below which it turns rather than walks: where the object is sideways, and elsewhere [m]"""
 BEHIND = -0.12
 """How far the object may be to the left for that [m]"""
@@ -43,14 +43,14 @@ BOUT = (2, 4)
 """Near the object, how many strokes it turns at a time, and with the rest after it, in which it looks"""
 NEAR = 0.13
 """Gap between the object and an arm's inner half below which it does so [m]"""
-STILL = (0.1, 0.05)
-"""Largest activation and speed of the head at which it lies still [1, m/s]"""
-BEND = ((0.18, 0.34), ((0.24, 0.075), (0.34, 0.045)))
-"""Where an arm that lies still begins to bend: how far ahead, and up to there, how near to its inner half [m]"""
+STILL = (0.1, 0.15)
+"""Largest activation and speed of a node at which it lies still [1, m/s]"""
+BEND = ((0.18, 0.345), 0.07)
+"""Where an arm that lies still begins to bend: how far ahead, and how near to its inner half [m]"""
 LEFT = -0.04
 REACH = ((0.1, 0.4), (-0.15, 0.2))
 """Where it goes on bending: how far ahead and to the right [m]"""
-RAMP = 0.064
+RAMP = 0.04
 """By how much the activation that bends it is ahead of what the muscles have reached: twice as much, and it fells what
 it should hold"""
 EMPTY = (0.9, 1)
@@ -97,7 +97,7 @@ class Sight(NamedTuple):
     levels: Array
     """Activations that the muscles have reached, (B, 42)"""
     speed: Array
-    """Of the head [m/s], (B,)"""
+    """Of the fastest node [m/s], (B,)"""
     home: Array
     """Way from the head to its home, ahead and to the right [m], (B, 2)"""
 
@@ -109,9 +109,10 @@ def see(observations: Array) -> Sight:
     base = o[:, THING] - 0.5 * OBJECT_LENGTH * o[:, AXIS]
     places = o[:, NODES].reshape(len(o), -1, 3)
     from_head = places - places[:, [HEAD_NODE]]
+    speeds = np.linalg.norm(o[:, VELOCITIES].reshape(len(o), -1, 3), axis=2)
     return Sight(
         ahead=base[:, 0], right=base[:, 2], gap=_gap(from_head, base), touched=np.sum(o[:, TOUCH] > 0.0, axis=1),
-        levels=o[:, LEVELS], speed=np.linalg.norm(o[:, HEAD_SPEED], axis=1), home=o[:, HOME],
+        levels=o[:, LEVELS], speed=speeds.max(axis=1), home=o[:, HOME],
     )  # fmt: skip
 
 
@@ -150,9 +151,9 @@ def act(sight: Sight, time: Array, grabbed: Mask, crawled: Mask) -> Array:
     ahead, right = sight.ahead, sight.right
     bearing = np.arctan2(right, ahead)
     sideways = np.abs(bearing - 0.5 * np.pi) < 0.4
-    is_close = np.sqrt(ahead * ahead + right * right) < np.where(sideways, *CLOSE)
     # what is ahead is for the second arm, what is behind for the first
     arm = np.where(ahead >= 0.0, 1, 0)
+    is_close = np.sqrt(ahead * ahead + right * right) < np.where(sideways, *CLOSE)
     actions = walk(time, bearing)
     for chosen, play in (
         (is_close & (right > BEHIND), turn(sight, time, arm)),
@@ -168,22 +169,21 @@ def _is_in_the_bend(sight: Sight, arm: Index) -> Mask:
     ahead, right = np.abs(sight.ahead), sight.right
     bent = np.take_along_axis(sight.levels, BENDING + arm[:, None] * N_FUNCTIONS, axis=1)
     level = bent.mean(axis=1)
-    (nearest, furthest), ((middle, wide), (_, narrow)) = BEND
-    begins = (ahead > nearest) & (ahead < furthest) & (right > LEFT)
-    begins &= sight.gap < np.where(ahead < middle, wide, narrow)
+    (nearest, furthest), gap = BEND
+    begins = (ahead > nearest) & (ahead < furthest) & (right > LEFT) & (sight.gap < gap)
     most, fastest = STILL
     begins &= (np.abs(sight.levels).max(axis=1) < most) & (sight.speed < fastest)
     (nearest, furthest), (left, rightmost) = REACH
     goes_on = (ahead > nearest) & (ahead < furthest) & (right > left) & (right < rightmost)
     # bent as a whole, not by a stroke
-    goes_on &= (level > 0.03) & (bent.max(axis=1) - bent.min(axis=1) < 0.02)
+    goes_on &= (level > 0.015) & (bent.max(axis=1) - bent.min(axis=1) < 0.02)
     goes_on &= (level < EMPTY[0]) | (sight.touched > EMPTY[1])
     return begins | goes_on
 
 
 def walk(time: Array, bearing: Array) -> Array:
     """Return the actions of a walk to the right that turns towards a bearing from the head's axis [rad], (B, 42)."""
-    off = (bearing - 0.5 * np.pi + np.pi) % (2.0 * np.pi) - np.pi
+    off = (bearing + 0.5 * np.pi) % (2.0 * np.pi) - np.pi
     first, second = (np.clip(1.0 - np.maximum(sign * off, 0.0) / STEERING, LEAST, 1.0) for sign in (-1.0, 1.0))
     return _play(time, first, second)
 
