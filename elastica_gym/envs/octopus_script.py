@@ -31,11 +31,11 @@ BENDING = np.arange(N_FUNCTIONS)
 """The first arm's activations that bend it sideways"""
 LIFTING = np.array([14, 15, 16])
 """Its activations of the first three functions that lift it"""
-STEERING = 0.8
+STEERING = 0.5
 """Angle off course at which one arm rests, and the other turns the animal [rad]"""
 LEAST = -0.5
 """What an arm does of the stroke, at least: the reverse of half of it"""
-CLOSE = (0.28, 0.37)
+CLOSE = (0.28, 0.3)
 """Distance from the head below which it turns rather than walks: where the object is sideways, and elsewhere [m]"""
 BEHIND = -0.12
 """How far the object may be to the left for that [m]"""
@@ -43,7 +43,7 @@ BOUT = (2, 4)
 """Near the object, how many strokes it turns at a time, and with the rest after it, in which it looks"""
 NEAR = 0.13
 """Gap between the object and an arm's inner half below which it does so [m]"""
-STILL = (0.1, 0.15)
+STILL = (0.1, 0.1)
 """Largest activation and speed of a node at which it lies still [1, m/s]"""
 BEND = ((0.18, 0.345), 0.07)
 """Where an arm that lies still begins to bend: how far ahead, and how near to its inner half [m]"""
