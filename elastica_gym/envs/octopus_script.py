@@ -39,7 +39,7 @@ CLOSE = (0.28, 0.3)
 """Distance from the head below which it turns rather than walks: where the object is sideways, and elsewhere [m]"""
 BEHIND = -0.12
 """How far the object may be to the left for that [m]"""
-BOUT = (2, 4)
+BOUT = (3, 5)
 """Near the object, how many strokes it turns at a time, and with the rest after it, in which it looks"""
 NEAR = 0.13
 """Gap between the object and an arm's inner half below which it does so [m]"""
@@ -50,7 +50,7 @@ BEND = ((0.18, 0.345), 0.07)
 LEFT = -0.04
 REACH = ((0.1, 0.4), (-0.15, 0.2))
 """Where it goes on bending: how far ahead and to the right [m]"""
-RAMP = 0.04
+RAMP = 0.05
 """By how much the activation that bends it is ahead of what the muscles have reached: twice as much, and it fells what
 it should hold"""
 EMPTY = (0.9, 1)
