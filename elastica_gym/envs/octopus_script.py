@@ -45,14 +45,16 @@ NEAR = 0.13
 """Gap between the object and an arm's inner half below which it does so [m]"""
 STILL = (0.1, 0.1)
 """Largest activation and speed of a node at which it lies still [1, m/s]"""
-BEND = ((0.18, 0.345), 0.07)
-"""Where an arm that lies still begins to bend: how far ahead, and how near to its inner half [m]"""
-LEFT = -0.04
+BEND = ((0.18, 0.345), -0.04, 0.07)
+"""Where an arm that lies still begins to bend: how far ahead, at least how far to the right, and how near to its inner
+half [m]"""
 REACH = ((0.1, 0.4), (-0.15, 0.2))
 """Where it goes on bending: how far ahead and to the right [m]"""
 RAMP = 0.05
-"""By how much the activation that bends it is ahead of what the muscles have reached: twice as much, and it fells what
-it should hold"""
+"""By how much the activation that bends it is ahead of what the muscles have reached: with more, it fells what it
+should hold"""
+LEANING = 0.05
+"""Tilt of the object above which the arm that bends around it yields until it stands again [rad]"""
 EMPTY = (0.9, 1)
 """Activation from which on an arm has missed, and lets go, where no more parts than this touch the object"""
 
@@ -96,6 +98,8 @@ class Sight(NamedTuple):
     """How many parts of the body touch the object, (B,) int64"""
     levels: Array
     """Activations that the muscles have reached, (B, 42)"""
+    tilt: Array
+    """Angle of the object's axis from upright [rad], (B,)"""
     speed: Array
     """Of the fastest node [m/s], (B,)"""
     home: Array
@@ -112,7 +116,8 @@ def see(observations: Array) -> Sight:
     speeds = np.linalg.norm(o[:, VELOCITIES].reshape(len(o), -1, 3), axis=2)
     return Sight(
         ahead=base[:, 0], right=base[:, 2], gap=_gap(from_head, base), touched=np.sum(o[:, TOUCH] > 0.0, axis=1),
-        levels=o[:, LEVELS], speed=speeds.max(axis=1), home=o[:, HOME],
+        levels=o[:, LEVELS], tilt=np.arccos(np.clip(o[:, AXIS][:, 1], -1.0, 1.0)), speed=speeds.max(axis=1),
+        home=o[:, HOME],
     )  # fmt: skip
 
 
@@ -169,8 +174,8 @@ def _is_in_the_bend(sight: Sight, arm: Index) -> Mask:
     ahead, right = np.abs(sight.ahead), sight.right
     bent = np.take_along_axis(sight.levels, BENDING + arm[:, None] * N_FUNCTIONS, axis=1)
     level = bent.mean(axis=1)
-    (nearest, furthest), gap = BEND
-    begins = (ahead > nearest) & (ahead < furthest) & (right > LEFT) & (sight.gap < gap)
+    (nearest, furthest), left, gap = BEND
+    begins = (ahead > nearest) & (ahead < furthest) & (right > left) & (sight.gap < gap)
     most, fastest = STILL
     begins &= (np.abs(sight.levels).max(axis=1) < most) & (sight.speed < fastest)
     (nearest, furthest), (left, rightmost) = REACH
@@ -211,11 +216,12 @@ def _wave(time: Array, period: Array, table: Array) -> Array:
 
 
 def bend(sight: Sight, arm: Index) -> Array:
-    """Return the actions that bend an arm more and more, (B, 42)."""
+    """Return the actions that bend an arm more and more, but less where what it holds leans, (B, 42)."""
     columns = BENDING + arm[:, None] * N_FUNCTIONS
     level = np.take_along_axis(sight.levels, columns, axis=1).mean(axis=1)
+    level += np.where(sight.tilt > LEANING, -RAMP, RAMP)
     actions = np.zeros((len(arm), N_ACTIVATIONS))
-    np.put_along_axis(actions, columns, np.minimum(level + RAMP, 1.0)[:, None], axis=1)
+    np.put_along_axis(actions, columns, np.minimum(level, 1.0)[:, None], axis=1)
     return actions
 
 
