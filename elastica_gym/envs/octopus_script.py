@@ -9,12 +9,13 @@ the first one in the mirror: with the same activations, for those that twist are
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..bodies.octopus import BASE_RADIUS, OBJECT_LENGTH, OBJECT_RADIUS
 from ..cosserat.model import Array, Index
 from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
 from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
-from .handling import has_crawled, now
+from .handling import now
 from .task import Mask
 
 if TYPE_CHECKING:
@@ -53,7 +54,9 @@ REACH = ((0.1, 0.4), (-0.15, 0.2))
 RAMP = 0.05
 """By how much the activation that bends it is ahead of what the muscles have reached: with more, it fells what it
 should hold"""
-LEANING = 0.05
+CRAWLED = 0.22
+"""Distance of the head from home that will do [m]: a bit more than is asked for, so that the body has come along"""
+LEANING = 0.03
 """Tilt of the object above which the arm that bends around it yields until it stands again [rad]"""
 EMPTY = (0.9, 1)
 """Activation from which on an arm has missed, and lets go, where no more parts than this touch the object"""
@@ -106,9 +109,9 @@ class Sight(NamedTuple):
     """Way from the head to its home, ahead and to the right [m], (B, 2)"""
 
 
-def see(observations: Array) -> Sight:
+def see(observations: NDArray[np.float32]) -> Sight:
     """Return what the script goes by, from observations (B, 210) of a task with an object."""
-    o = np.asarray(observations, dtype=np.float64)
+    o: Array = observations.astype(np.float64)
     # of a body of 1 m
     base = o[:, THING] - 0.5 * OBJECT_LENGTH * o[:, AXIS]
     places = o[:, NODES].reshape(len(o), -1, 3)
@@ -135,9 +138,9 @@ def _gap(nodes: Array, base: Array) -> Array:
 
 def fetch(env: "BatchEnv") -> Array:
     """Return the actions of the script in a task that follows how the object is handled, (B, 42)."""
-    situation = env.situation()
-    return act(see(env.observations), env.elapsed * env.control_dt, now(situation).grabbed == 1.0,
-               has_crawled(situation))
+    handled = now(env.situation())
+    time = env.elapsed.astype(np.float64) * env.control_dt
+    return act(see(env.observations), time, handled.grabbed == 1.0, handled.head_way >= CRAWLED)
 
 
 def act(sight: Sight, time: Array, grabbed: Mask, crawled: Mask) -> Array:
@@ -151,7 +154,7 @@ def act(sight: Sight, time: Array, grabbed: Mask, crawled: Mask) -> Array:
     grabbed : Mask
         Whether an arm has grabbed the object, (B,) bool.
     crawled : Mask
-        Whether the animal has been as far from home as it should, (B,) bool.
+        Whether the head has been `CRAWLED` away from home, (B,) bool; until then it carries the object away from there.
     """
     ahead, right = sight.ahead, sight.right
     bearing = np.arctan2(right, ahead)
@@ -194,10 +197,10 @@ def walk(time: Array, bearing: Array) -> Array:
 
 
 def turn(sight: Sight, time: Array, arm: Index) -> Array:
-    """Return the actions of a turn that brings an arm, which rests, to the right, in bouts where it is near, (B, 42)."""
+    """Return the actions of a turn that brings an arm, which rests, to the right, near the object in bouts, (B, 42)."""
     strokes, bout = BOUT
-    is_turning = (sight.gap > NEAR) | (time / OCTOPUS_STROKES["right"][0] % bout < strokes)
-    return _play(time, is_turning * arm, is_turning * (1.0 - arm))
+    strength: Array = ((sight.gap > NEAR) | (time / OCTOPUS_STROKES["right"][0] % bout < strokes)).astype(np.float64)
+    return _play(time, strength * arm, strength * (1.0 - arm))
 
 
 def _play(time: Array, first: Array, second: Array) -> Array:

@@ -51,9 +51,8 @@ def test_the_file_tells_by_the_goal_whether_it_holds_the_object(make):
     assert (now(batch.situation()).grabbed == 1.0).all()
     policy = FilePolicy(POLICY)
     policy.reset([0, 0])
-    # home is more than 0.22 m away in both, or the file would first carry the object on
-    away = np.linalg.norm(observations[:, 208:210], axis=1)
-    far = away > 0.22
+    # nearer to home, it would carry the object away first
+    far = np.linalg.norm(observations[:, 208:210], axis=1) >= octopus_script.CRAWLED
     assert far.any()
     sight = octopus_script.see(observations)
     carrying = octopus_script.carry(sight.home, np.zeros(2), np.where(sight.ahead >= 0.0, 1, 0))
