@@ -7,12 +7,10 @@ by where the goal is.
 
 import numpy as np
 
-from elastica_gym.envs.octopus_script import act, see
+from elastica_gym.envs.octopus_script import CRAWLED, act, see
 
 CONTROL_DT = 0.05
 """From one action to the next [s]"""
-CRAWLED = 0.22
-"""Distance of the head from home that will do [m]: a bit more than is asked for, so that the body has come along"""
 THING, GOAL, HOME = [148, 150], [206, 207], [208, 209]
 """Where an observation has, forward and right: the object, the direction to the goal, and the way home"""
 
