@@ -272,6 +272,11 @@ class BatchEnv(VectorEnv):
         for future in futures:
             future.result()
 
+    @property
+    def observations(self) -> Observations:
+        """What the animals sense now, (B, d)."""
+        return self._observations.copy()
+
     def situation(self) -> Situation:
         """Return where the batch stands."""
         left = np.maximum(1.0 - self.elapsed / self.max_episode_steps, 0.0)

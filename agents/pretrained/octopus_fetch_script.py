@@ -1,0 +1,39 @@
+"""OctopusFetch by script: the octopus walks to its object, bends an arm around it and carries it home.
+
+It is `elastica_gym.envs.octopus_script`, whose tables CMA-ES has found, and adds what that is told by the
+environment: it counts the time, remembers how far the head has been from home, and sees whether the object is grabbed
+by where the goal is.
+"""
+
+import numpy as np
+
+from elastica_gym.envs.octopus_script import CRAWLED, act, see
+
+CONTROL_DT = 0.05
+"""From one action to the next [s]"""
+THING, GOAL, HOME = [148, 150], [206, 207], [208, 209]
+"""Where an observation has, forward and right: the object, the direction to the goal, and the way home"""
+
+# memory: the file is run afresh for every episode
+steps = 0
+furthest = 0.0
+
+
+def policy(observation: np.ndarray) -> np.ndarray:
+    """Return the actions (42,) for an observation (210,) of `elastica_gym.envs.octopus_fetch`."""
+    global steps, furthest
+    time = steps * CONTROL_DT
+    steps += 1
+    # of a body of 1 m
+    furthest = max(furthest, float(np.linalg.norm(observation[HOME])))
+    told = time, has_grabbed(observation), furthest >= CRAWLED
+    return act(see(observation[None]), *(np.array([each]) for each in told))[0]
+
+
+def has_grabbed(observation: np.ndarray) -> bool:
+    """Return whether the goal is home rather than the object."""
+    to_object, to_home = (
+        np.linalg.norm(observation[GOAL] - way / max(float(np.linalg.norm(way)), 1e-9))
+        for way in (observation[THING], observation[HOME])
+    )
+    return bool(to_home < to_object)

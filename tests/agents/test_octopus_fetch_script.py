@@ -1,0 +1,73 @@
+"""The policy file that fetches the object by script, from observations alone."""
+
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+import agents
+from agents.policy_file import FilePolicy
+from elastica_gym.envs import octopus_script
+from elastica_gym.envs.handling import now
+
+POLICY = Path(agents.__file__).parent / "pretrained" / "octopus_fetch_script.py"
+FETCH = "elastica_gym/OctopusFetch-v0"
+
+
+@pytest.fixture
+def make():
+    """Make a batch of octopuses at the default target, and close it in the end."""
+    made = []
+
+    def batch(env_id=FETCH, **kwargs):
+        made.append(gymnasium.make_vec(env_id, num_envs=2, autoreset_mode=AutoresetMode.DISABLED, **kwargs))
+        return made[-1].unwrapped
+
+    yield batch
+    for env in made:
+        env.close()
+
+
+def test_the_file_does_what_the_script_does(make):
+    batch = make(spread="default")
+    observations, _ = batch.reset(seed=[3, 4])
+    policy = FilePolicy(POLICY)
+    policy.reset([0, 0])
+    played = []
+    for _ in range(24):
+        actions = policy(observations, batch)
+        assert batch.action_space.contains(actions)
+        np.testing.assert_allclose(actions, octopus_script.fetch(batch), atol=1e-6)
+        played.append(actions)
+        observations, *_ = batch.step(actions)
+    assert np.ptp(np.array(played), axis=0).max() > 0.5
+
+
+def test_the_file_tells_by_the_goal_whether_it_holds_the_object(make):
+    batch = make("elastica_gym/OctopusReturn-v0")
+    observations, _ = batch.reset(seed=[3, 4])
+    assert (now(batch.situation()).grabbed == 1.0).all()
+    policy = FilePolicy(POLICY)
+    policy.reset([0, 0])
+    # nearer to home, it would carry the object away first
+    far = np.linalg.norm(observations[:, 208:210], axis=1) >= octopus_script.CRAWLED
+    assert far.any()
+    sight = octopus_script.see(observations)
+    carrying = octopus_script.carry(sight.home, np.zeros(2), np.where(sight.ahead >= 0.0, 1, 0))
+    np.testing.assert_allclose(policy(observations, batch)[far], carrying[far], atol=1e-6)
+
+
+def test_what_the_script_sees_is_where_things_are(make):
+    batch = make(spread="arc")
+    batch.reset(seed=[3, 4])
+    for _ in range(6):
+        batch.step(octopus_script.fetch(batch))
+    sight, situation = octopus_script.see(batch.observations), batch.situation()
+    handled, head = now(situation), situation.pose.head
+    away = np.hypot(handled.base_x - head[:, 0], handled.base_z - head[:, 2])
+    np.testing.assert_allclose(np.hypot(sight.ahead, sight.right), away, atol=1e-5)
+    np.testing.assert_allclose(sight.levels, batch.levels, atol=1e-6)
+    # of nodes 83 mm apart, on an arm that bends
+    np.testing.assert_allclose(sight.gap, handled.reach, atol=0.05)
