@@ -56,15 +56,15 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
 | toppled | -10 | 1 where the head has rolled or pitched by more than 60 degrees |
 | fallen | -10 | 1 where the object leans by more than 45 degrees |
-| dropped | -10 | 1 where the object is let go |
+| dropped | -10 | 1 in the step in which the object is let go |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
 The object is held where the touching elements of an arm, at least five, span 150 degrees around its axis (see
 `elastica_gym.envs.octopus_grab`), and let go when they have spanned less at the end of each control step for
 more than 0.2 s. Home is a difference of what is so far, so going to and fro earns nothing; what is let go costs
 what it had earned. The info also has ``distance``, by how much the object is nearer to home than at the start
-[m]; ``is_success``; and ``termination_reason``: empty, ``success``, ``time_limit``, ``toppled``, ``fallen``,
-``dropped`` or ``diverged``.
+[m]; ``is_success``; and ``termination_reason``: empty, ``success``, ``time_limit``, ``toppled``, ``fallen`` or
+``diverged``.
 
 Starting state
 --------------
@@ -76,8 +76,8 @@ Episode end
 -----------
 Terminated at success. Truncated after 10 s, which are 200 control steps. Terminated if the head rolls or
 pitches by more than 60 degrees, since a ball rolls further than it crawls; if the object leans by more than 45
-degrees, since what has fallen cannot be set up again; if it is let go; and if numbers stop being finite, or a
-node or the object is faster than 50 m/s: then the last sound observation is returned.
+degrees, since what has fallen cannot be set up again; and if numbers stop being finite, or a node or the
+object is faster than 50 m/s: then the last sound observation is returned. What is let go may be grabbed again.
 
 Arguments
 ---------
@@ -98,6 +98,7 @@ from ..cosserat.model import Array
 from .handling import (
     GOAL_SIZE,
     Handling,
+    before,
     brought,
     direction_home,
     fallen,
@@ -110,7 +111,7 @@ from .handling import (
 )
 from .octopus_script import fetch
 from .starts import with_object_held
-from .task import Mask, Situation, Task, effort, has_toppled, toppled, way_to_goal
+from .task import Situation, Task, effort, has_toppled, toppled, way_to_goal
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -141,14 +142,9 @@ def early(situation: Situation) -> Array:
     return success(situation) * situation.time_left
 
 
-def has_dropped(situation: Situation) -> Mask:
-    """Return whether the object is let go, (B,) bool."""
-    return now(situation).grabbed == 0.0
-
-
 def dropped(situation: Situation) -> Array:
-    """Return 1 where the object is let go, (B,)."""
-    return has_dropped(situation).astype(np.float64)
+    """Return 1 where the object has been let go in this step, (B,)."""
+    return np.maximum(before(situation).grabbed - now(situation).grabbed, 0.0)
 
 
 def target(goal: Array) -> Array:
@@ -184,7 +180,7 @@ TASK = Task(
     distance=brought,
     succeeds=is_at_home,
     ends_on_success=True,
-    failures={"toppled": has_toppled, "fallen": has_fallen, "dropped": has_dropped},
+    failures={"toppled": has_toppled, "fallen": has_fallen},
     target=target,
     scripted_policy=scripted_policy,
 )  # fmt: skip

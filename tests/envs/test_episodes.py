@@ -72,14 +72,16 @@ def test_an_automatic_episode_equals_one_asked_for(env_id, make_vec, mode):
 
 
 def test_next_step_begins_with_the_step_after_the_end(env_id, make_vec):
-    env = make_vec(env_id, 2, autoreset_mode=AutoresetMode.NEXT_STEP)
+    env, asked = (make_vec(env_id, 2, autoreset_mode=m) for m in (AutoresetMode.NEXT_STEP, AutoresetMode.DISABLED))
     env.reset(seed=0)
+    asked.reset(seed=0)
     for _ in range(STEPS):
         _, _, _, truncated, _ = env.step(np.zeros((2, 42)))
     assert truncated.all()
     _, reward, terminated, truncated, _ = env.step(np.ones((2, 42)))
+    asked.reset()
     assert (reward == 0.0).all() and not (terminated | truncated).any()
-    assert (env.elapsed == 0).all() and (env.levels == 0.0).all()
+    assert (env.elapsed == 0).all() and np.array_equal(env.levels, asked.levels)
 
 
 def test_disabled_resets_only_where_asked(env_id, make_vec):

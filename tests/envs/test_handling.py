@@ -25,18 +25,13 @@ def test_what_is_held_at_the_start_is_wrapped_and_stays_so(make_vec):
     assert np.degrees(held.tilt).max() < 10.0
 
 
-def test_an_arm_that_lets_go_ends_the_way_home_and_costs(make_vec):
+def test_an_arm_that_lets_go_is_charged_once(make_vec):
     env = make_vec(RETURN, 2, duration=2.0, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
-    steps = 0
-    while steps < 40:
-        _, reward, terminated, _, info = env.step(np.zeros((2, 42)))
-        steps += 1
-        if terminated.all():
-            break
-    assert info["termination_reason"].tolist() == ["dropped"] * 2 and (reward < -10.0).all()
+    rewards = np.array([env.step(np.zeros((2, 42)))[1] for _ in range(20)])
+    assert ((rewards < -10.0).sum(axis=0) == 1).all()
     # never at once: it may hold less for 0.2 s
-    assert steps >= 5
+    assert (rewards[:4] > -1.0).all()
 
 
 def test_the_object_is_grabbed_when_it_has_been_wrapped_for_half_a_second(make_vec):
