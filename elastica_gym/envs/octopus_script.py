@@ -51,12 +51,12 @@ BEND = ((0.18, 0.345), -0.04, 0.07)
 half [m]"""
 REACH = ((0.1, 0.4), (-0.15, 0.2))
 """Where it goes on bending: how far ahead and to the right [m]"""
-RAMP = 0.05
+RAMP = 0.04
 """By how much the activation that bends it is ahead of what the muscles have reached: with more, it fells what it
 should hold"""
 CRAWLED = 0.22
 """Distance of the head from home that will do [m]: a bit more than is asked for, so that the body has come along"""
-LEANING = 0.03
+LEANING = 0.05
 """Tilt of the object above which the arm that bends around it yields until it stands again [rad]"""
 EMPTY = (0.9, 1)
 """Activation from which on an arm has missed, and lets go, where no more parts than this touch the object"""
