@@ -3,13 +3,15 @@
 All is told from where things are at the end of each control step (`elastica_gym.bodies.grip`), not from forces.
 """
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
 
+from ..bodies import octopus
 from ..bodies.grip import arm_elements, grip
 from ..cosserat.model import Array, Index, State
-from .task import Mask, Situation, in_heading_frame, way_to_goal
+from .task import GOAL_BOUNDS, GOAL_NAMES, Mask, Situation, Task, has_toppled, in_heading_frame, no_target, way_to_goal
 
 WRAPPED = np.radians(200.0)
 """Angle around the object's axis that the touching elements of an arm span where it has grabbed it [rad]"""
@@ -135,6 +137,11 @@ def direction_to_object(situation: Situation) -> tuple[Array, Array]:
     return in_heading_frame(situation, x / away, z / away)
 
 
+def see_object(situation: Situation) -> Array:
+    """Return the direction to the object, forward and right, and the way home, forward and right, (B, 4)."""
+    return np.stack([*direction_to_object(situation), *way_to_goal(situation)], axis=1)
+
+
 def direction_home(situation: Situation) -> tuple[Array, Array]:
     """Return the direction from the head to its home, forward and right, (B,) each; at home it is 0."""
     forward, right = way_to_goal(situation)
@@ -227,3 +234,11 @@ def has_fallen(situation: Situation) -> Mask:
 def fallen(situation: Situation) -> Array:
     """Return 1 where the object leans by more than 45 degrees, (B,)."""
     return has_fallen(situation).astype(np.float64)
+
+
+handling_task = functools.partial(
+    Task, make_body=octopus, goal_size=GOAL_SIZE, draw_goal=draw_goal, goal_names=GOAL_NAMES, goal_bounds=GOAL_BOUNDS,
+    progress_names=Handling._fields, follow=follow, ends_on_success=True,
+    failures={"toppled": has_toppled, "fallen": has_fallen}, target=no_target,
+)  # fmt: skip
+"""Make a task of handling the object; what these have in common is given, and may be given otherwise"""

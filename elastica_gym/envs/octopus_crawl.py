@@ -90,7 +90,19 @@ from ..bodies import octopus
 from ..cosserat.model import Array
 from .gaits import octopus_crawl
 from .starts import with_object_anywhere
-from .task import Mask, Situation, Task, effort, has_toppled, in_heading_frame, no_target, toppled, way_to_goal
+from .task import (
+    GOAL_BOUNDS,
+    GOAL_NAMES,
+    Mask,
+    Situation,
+    Task,
+    effort,
+    has_toppled,
+    in_heading_frame,
+    no_target,
+    toppled,
+    way_to_goal,
+)
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -146,8 +158,8 @@ TASK = Task(
     starts={"anywhere": with_object_anywhere},
     goal_size=6,
     draw_goal=draw_goal,
-    goal_names=("goal/forward", "goal/right", "home/forward", "home/right"),
-    goal_bounds=((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0)),
+    goal_names=GOAL_NAMES,
+    goal_bounds=GOAL_BOUNDS,
     see_goal=see_goal,
     reward_terms={"forward": forward, "effort": effort, "toppled": toppled},
     reward_weights={"forward": 10.0, "effort": 0.1, "toppled": -10.0, "diverged": -10.0},

@@ -98,26 +98,19 @@ Version history
 v0: the first.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from ..bodies import octopus
 from ..cosserat.model import Array
 from .handling import (
-    GOAL_SIZE,
-    Handling,
     approach,
     brought,
     crawl,
     direction_home,
     direction_to_object,
-    draw_goal,
     fallen,
-    follow,
     grab,
+    handling_task,
     has_crawled,
-    has_fallen,
     has_moved,
     home,
     is_at_home,
@@ -127,10 +120,7 @@ from .handling import (
 )
 from .octopus_script import fetch
 from .starts import OBJECT_STARTS
-from .task import Mask, Situation, Task, effort, has_toppled, no_target, toppled, way_to_goal
-
-if TYPE_CHECKING:
-    from .batch import BatchEnv
+from .task import Mask, Situation, effort, toppled, way_to_goal
 
 
 def see_goal(situation: Situation) -> Array:
@@ -154,23 +144,11 @@ def early(situation: Situation) -> Array:
     return success(situation) * situation.time_left
 
 
-def scripted_policy(env: "BatchEnv") -> Array:
-    """Return the actions of a script that crawls to the object, grabs it and carries it home, (B, 42)."""
-    return fetch(env)
-
-
-TASK = Task(
+TASK = handling_task(
     name="OctopusFetch",
-    make_body=octopus,
     duration=20.0,
     starts={name: OBJECT_STARTS[name] for name in ("anywhere", "arc", "default")},
-    goal_size=GOAL_SIZE,
-    draw_goal=draw_goal,
-    goal_names=("goal/forward", "goal/right", "home/forward", "home/right"),
-    goal_bounds=((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0)),
     see_goal=see_goal,
-    progress_names=Handling._fields,
-    follow=follow,
     reward_terms={
         "crawl": crawl, "approach": approach, "move": move, "wrap": wrap, "grab": grab, "home": home,
         "success": success, "early": early, "effort": effort, "toppled": toppled, "fallen": fallen,
@@ -181,8 +159,5 @@ TASK = Task(
     },
     distance=brought,
     succeeds=succeeds,
-    ends_on_success=True,
-    failures={"toppled": has_toppled, "fallen": has_fallen},
-    target=no_target,
-    scripted_policy=scripted_policy,
+    scripted_policy=fetch,
 )  # fmt: skip

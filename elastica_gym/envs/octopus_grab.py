@@ -93,35 +93,20 @@ Version history
 v0: the first.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from ..bodies import octopus
 from ..cosserat.model import Array
 from .handling import (
-    GOAL_SIZE,
-    Handling,
     approach,
-    direction_to_object,
-    draw_goal,
     fallen,
-    follow,
-    has_fallen,
+    handling_task,
     now,
+    see_object,
     wrap,
 )
 from .octopus_script import fetch
 from .starts import OBJECT_STARTS, with_object_nearby
-from .task import Mask, Situation, Task, effort, has_toppled, no_target, toppled, way_to_goal
-
-if TYPE_CHECKING:
-    from .batch import BatchEnv
-
-
-def see_goal(situation: Situation) -> Array:
-    """Return the direction to the object, forward and right, and the way home, forward and right, (B, 4)."""
-    return np.stack([*direction_to_object(situation), *way_to_goal(situation)], axis=1)
+from .task import Mask, Situation, effort, toppled
 
 
 def succeeds(situation: Situation) -> Mask:
@@ -144,23 +129,11 @@ def distance(situation: Situation) -> Array:
     return now(situation).span * situation.body.cylinders[0].radius
 
 
-def scripted_policy(env: "BatchEnv") -> Array:
-    """Return the actions of a script that crawls to the object and grabs it, (B, 42)."""
-    return fetch(env)
-
-
-TASK = Task(
+TASK = handling_task(
     name="OctopusGrab",
-    make_body=octopus,
     duration=10.0,
     starts={name: OBJECT_STARTS[name] for name in ("default", "arc", "anywhere")} | {"near": with_object_nearby},
-    goal_size=GOAL_SIZE,
-    draw_goal=draw_goal,
-    goal_names=("goal/forward", "goal/right", "home/forward", "home/right"),
-    goal_bounds=((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0)),
-    see_goal=see_goal,
-    progress_names=Handling._fields,
-    follow=follow,
+    see_goal=see_object,
     reward_terms={
         "approach": approach, "wrap": wrap, "success": success, "early": early, "effort": effort, "toppled": toppled,
         "fallen": fallen,
@@ -171,8 +144,5 @@ TASK = Task(
     },
     distance=distance,
     succeeds=succeeds,
-    ends_on_success=True,
-    failures={"toppled": has_toppled, "fallen": has_fallen},
-    target=no_target,
-    scripted_policy=scripted_policy,
+    scripted_policy=fetch,
 )  # fmt: skip

@@ -94,9 +94,9 @@ from ..bodies import octopus
 from ..bodies.grip import TOUCH
 from ..cosserat.model import Array
 from .gaits import octopus_reach
-from .handling import direction_to_object
+from .handling import see_object
 from .starts import OBJECT_STARTS
-from .task import Mask, Situation, Task, effort, has_toppled, no_target, toppled, way_to_goal
+from .task import GOAL_BOUNDS, GOAL_NAMES, Mask, Situation, Task, effort, has_toppled, no_target, toppled
 
 if TYPE_CHECKING:
     from .batch import BatchEnv
@@ -105,11 +105,6 @@ if TYPE_CHECKING:
 def draw_goal(rng: np.random.Generator, situation: Situation) -> Array:
     """Return home (x, z) and the gap at the start [m], (3,)."""
     return np.array([*situation.pose.head[0, [0, 2]], situation.pose.gaps[0, 0]])
-
-
-def see_goal(situation: Situation) -> Array:
-    """Return the direction to the object, forward and right, and the way home, forward and right, (B, 4)."""
-    return np.stack([*direction_to_object(situation), *way_to_goal(situation)], axis=1)
 
 
 def approach(situation: Situation) -> Array:
@@ -139,7 +134,7 @@ def distance(situation: Situation) -> Array:
 
 def scripted_policy(env: "BatchEnv") -> Array:
     """Return the actions of a script that throws an arm at the object, or crawls to it, (B, 42)."""
-    seen = see_goal(env.situation())
+    seen = see_object(env.situation())
     return octopus_reach(env, np.arctan2(seen[:, 1], seen[:, 0]))
 
 
@@ -150,9 +145,9 @@ TASK = Task(
     starts=OBJECT_STARTS,
     goal_size=3,
     draw_goal=draw_goal,
-    goal_names=("goal/forward", "goal/right", "home/forward", "home/right"),
-    goal_bounds=((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0)),
-    see_goal=see_goal,
+    goal_names=GOAL_NAMES,
+    goal_bounds=GOAL_BOUNDS,
+    see_goal=see_object,
     reward_terms={"approach": approach, "success": success, "early": early, "effort": effort, "toppled": toppled},
     reward_weights={
         "approach": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "toppled": -10.0, "diverged": -10.0,

@@ -89,32 +89,23 @@ Version history
 v0: the first.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from ..bodies import octopus
 from ..cosserat.model import Array
 from .handling import (
-    GOAL_SIZE,
-    Handling,
     before,
     brought,
     direction_home,
     fallen,
-    follow,
     goal_with_home,
-    has_fallen,
+    handling_task,
     home,
     is_at_home,
     now,
 )
 from .octopus_script import fetch
 from .starts import with_object_held
-from .task import Situation, Task, effort, has_toppled, toppled, way_to_goal
-
-if TYPE_CHECKING:
-    from .batch import BatchEnv
+from .task import Situation, effort, toppled, way_to_goal
 
 AWAY = (0.2, 0.6)
 """Least and largest distance of the head from home at reset [m]"""
@@ -152,23 +143,12 @@ def target(goal: Array) -> Array:
     return np.stack([goal[:, 0], np.zeros(len(goal)), goal[:, 1]], axis=1)
 
 
-def scripted_policy(env: "BatchEnv") -> Array:
-    """Return the actions of a script that carries the object home, (B, 42)."""
-    return fetch(env)
-
-
-TASK = Task(
+TASK = handling_task(
     name="OctopusReturn",
-    make_body=octopus,
     duration=10.0,
     starts={"held": with_object_held},
-    goal_size=GOAL_SIZE,
     draw_goal=draw_goal,
-    goal_names=("goal/forward", "goal/right", "home/forward", "home/right"),
-    goal_bounds=((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0)),
     see_goal=see_goal,
-    progress_names=Handling._fields,
-    follow=follow,
     reward_terms={
         "home": home, "success": success, "early": early, "effort": effort, "toppled": toppled, "fallen": fallen,
         "dropped": dropped,
@@ -179,8 +159,6 @@ TASK = Task(
     },
     distance=brought,
     succeeds=is_at_home,
-    ends_on_success=True,
-    failures={"toppled": has_toppled, "fallen": has_fallen},
     target=target,
-    scripted_policy=scripted_policy,
+    scripted_policy=fetch,
 )  # fmt: skip

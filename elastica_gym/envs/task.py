@@ -13,6 +13,12 @@ from ..cosserat.model import Array, State
 Mask = NDArray[np.bool_]
 
 
+GOAL_NAMES = ("goal/forward", "goal/right", "home/forward", "home/right")
+"""What the octopus sees of its goals: a direction to go, and the way home"""
+GOAL_BOUNDS = ((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0))
+"""Least and largest value of each"""
+
+
 class Situation(NamedTuple):
     """Where a batch of B environments stands after a control step."""
 
