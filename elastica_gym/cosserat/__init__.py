@@ -36,13 +36,20 @@ from .contact_forces import (
     RodSelfContact,
     RodSphereContact,
 )
-from .dissipation import AnalyticalLinearDamper, DamperBase, LaplaceDissipationFilter, RayleighDissipation
+from .dissipation import (
+    AnalyticalLinearDamper,
+    DamperBase,
+    ExponentialDamper,
+    LaplaceDissipationFilter,
+    RayleighDissipation,
+)
 from .external_forces import (
     EndpointForces,
     EndpointForcesSinusoidal,
     GravityForces,
     MuscleTorques,
     NoForces,
+    ReciprocalTension,
     UniformForces,
     UniformTorques,
 )
@@ -94,6 +101,7 @@ __all__ = [
     "Damping",
     "EndpointForces",
     "EndpointForcesSinusoidal",
+    "ExponentialDamper",
     "ExportCallBack",
     "ExternalContact",
     "FixedConstraint",
@@ -119,6 +127,7 @@ __all__ = [
     "Plane",
     "PositionVerlet",
     "RayleighDissipation",
+    "ReciprocalTension",
     "RerunCallBack",
     "RigidBodyBase",
     "Rod",

@@ -100,6 +100,10 @@ class AnalyticalLinearDamper(DamperBase):
         builder.add_decay(self.system, node_rate=node, element_rate=element, dilating_rate=dilating)
 
 
+# by its name in 0.3.0
+ExponentialDamper = AnalyticalLinearDamper
+
+
 class LaplaceDissipationFilter(DamperBase):
     """Takes the shortest waves out of velocities and angular velocities, and leaves long ones alone.
 

@@ -167,6 +167,36 @@ class UniformTorques(NoForces):
         builder.add_dead_torque(system, self.torque[:, None] / system.n_elems)
 
 
+class ReciprocalTension(NoForces):
+    """The tension in a rod that makes its loads those of a potential: an option, which the documented model lacks.
+
+    In the documented model, couples go with 1/E^3 of the dilatation at a joint, forces with 1/e and spins with J/e,
+    but nothing resists the stretch by which they change. So thick rods that stretch and bend gain or lose energy,
+    and stiff ones may flutter. With it, a free rod keeps the sum of its kinetic energy, of
+    sum (kappa - kappa^).B (kappa - kappa^) D^/(2 E^3) and of sum (sigma - sigma^).S (sigma - sigma^) l^/(2 e).
+    """
+
+    def apply_forces(self, system: Any, time: float = 0.0) -> None:
+        """Pull the nodes of each element together."""
+        s, k, w = system.sigma - system.rest_sigma, system.kappa - system.rest_kappa, system.omega_collection
+        shear, bend, spin = (np.einsum("ik,ijk,jk->k", a, matrix, a) for a, matrix in (
+            (s, system.shear_matrix), (k, system.bend_matrix), (w, system.mass_second_moment_of_inertia)))  # fmt: skip
+        bend *= 0.75 / system.voronoi_dilatation**4
+        # a joint is between two elements; a ring's last is that before its first element
+        around = bend + np.roll(bend, 1) if system.ring_rod_flag else np.append(bend, 0.0) + np.append(0.0, bend)
+        tension = 0.5 * (spin / system.rest_lengths - shear) / system.dilatation**2 - around
+        force = tension * system.tangents
+        if system.ring_rod_flag:
+            system.external_forces += force - np.roll(force, 1, axis=1)
+        else:
+            system.external_forces[:, :-1] += force
+            system.external_forces[:, 1:] -= force
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write a rod."""
+        builder.add_tension(system)
+
+
 class MuscleTorques(NoForces):
     """A travelling wave of muscle couple along a rod (Gazzola et al. 2018, section 5.2).
 

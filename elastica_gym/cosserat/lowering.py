@@ -5,6 +5,7 @@ that overrides what is called every step is not lowered: the step calls it inste
 """
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from .assembly import plane_table
 from .kernels.simulate import DENSE, SPARSE, UNLOADED
-from .model import ROOM, Array, Index, Model, Waves, aligned_zeros
+from .model import BLOCK, ROOM, Array, Index, Model, Waves, aligned_zeros
 from .rod.rod_base import RodBase
 from .scene import (
     BodyContacts,
@@ -28,10 +29,13 @@ from .scene import (
     Rings,
     RodContacts,
     Scene,
+    Tensions,
 )
 from .surroundings import Plane, net_couple
 
 ALWAYS = -np.inf
+CACHED = 1024
+"""Slots that the stages of strains take at a time: their 70 rows fit half of a second-level cache of 1 MB"""
 STRAY = 0.2
 """How far an element may move before pairs that may touch are listed anew, in the smallest radius"""
 
@@ -69,6 +73,8 @@ class SceneBuilder:
 
     def __init__(self, model: Model, rods: Sequence[Any], bodies: Sequence[Any] = ()) -> None:
         self._slots = model.mass.size
+        self._starts = model.first_slot
+        self._end = -(-int(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK
         # (bodies alone have a bystander in the model)
         self._first = {id(rod): int(start) for rod, start in zip(rods, model.first_slot, strict=bool(rods))}
         self._body = {id(body): number for number, body in enumerate(bodies)}
@@ -77,6 +83,7 @@ class SceneBuilder:
         self._dead_force, self._dead_torque = aligned_zeros((3, self._slots)), aligned_zeros((3, self._slots))
         self._waves: dict[tuple, tuple[Array, Array, list[_Span]]] = {}
         self._flows: list[tuple[_Span, float]] = []
+        self._tensions: list[tuple[_Span, bool]] = []
         self._drag_force, self._drag_torque = aligned_zeros((self._slots,)), aligned_zeros((self._slots,))
         self._joints: list[tuple] = []
         self._number = {id(rod): number for number, rod in enumerate(rods)}
@@ -158,6 +165,11 @@ class SceneBuilder:
         """Add a viscous fluid around a system [Pa s]."""
         where = self.elements(system)
         self._flows.append((_Span(where.start, where.stop), viscosity))
+
+    def add_tension(self, system: Any) -> None:
+        """Make the loads of a rod those of a potential."""
+        where = self.elements(system)
+        self._tensions.append((_Span(where.start, where.stop), system.ring_rod_flag))
 
     def add_drag(self, system: Any, force: ArrayLike, torque: ArrayLike) -> None:
         """Add drag per velocity of nodes [N s/m] and per angular velocity of elements [N m s]."""
@@ -254,7 +266,7 @@ class SceneBuilder:
     @property
     def loading(self) -> int:
         """Where anything acts from outside, but planes: UNLOADED, SPARSE or DENSE."""
-        rows = (self._waves, self._flows, self._rod_contacts, self._body_contacts)
+        rows = (self._waves, self._flows, self._tensions, self._rod_contacts, self._body_contacts)
         if any(map(len, rows)) or self._dead_force.any() or self._dead_torque.any():
             return DENSE
         is_loaded = self._point_loads or self._joints or self._body_force.any() or self._body_torque.any()
@@ -268,6 +280,7 @@ class SceneBuilder:
         places = [row[0] for row in self._point_loads] + [place for row in self._joints for place in (*row[0], *row[1])]
         rings = [(self._first[id(rod)], rod.n_elems) for rod in self._rods if rod.ring_rod_flag]
         return Scene(
+            blocks=_spans(self._blocks()),
             rings=_table(Rings, rings, "i", "i"),
             touched=np.unique(np.array([place for place in places if place >= 0], dtype=np.int64)),
             point_loads=_table(PointLoads, self._point_loads, "i", "", "3", "3", "3", "3", ""),
@@ -279,6 +292,8 @@ class SceneBuilder:
             wave_span=_spans(spans),
             flows=Flows(_spans([span for span, _ in self._flows]),
                         np.array([mu for _, mu in self._flows], dtype=np.float64)),
+            tensions=Tensions(_spans([span for span, _ in self._tensions]),
+                              np.array([is_closed for _, is_closed in self._tensions], dtype=np.bool_)),
             drag=Drag(bool(self._drag_force.any() or self._drag_torque.any()), self._drag_force, self._drag_torque),
             joints=_table(Joints, self._joints, "i2", "i2", "", "", "", "3", "", "", "33"),
             rod_contacts=self._rod_contact_table(),
@@ -298,6 +313,16 @@ class SceneBuilder:
                             np.array([order for _, order, _ in self._filters], dtype=np.int64),
                             np.array([is_closed for _, _, is_closed in self._filters], dtype=np.bool_)),
         )  # fmt: skip
+
+    def _blocks(self) -> list[_Span]:
+        """Return the slots of as many rods at a time as stay in the cache, in whole blocks at the end."""
+        blocks: list[_Span] = []
+        for first, end in pairwise([*self._starts.tolist(), self._end]):
+            if blocks and end - blocks[-1].first <= CACHED:
+                blocks[-1] = _Span(blocks[-1].first, end)
+            else:
+                blocks.append(_Span(first, end))
+        return blocks
 
     def _rod_contact_table(self) -> RodContacts:
         rod_of = aligned_zeros((self._slots,), np.int64)

@@ -59,6 +59,15 @@ class Flows(NamedTuple):
     """Dynamic viscosity mu of the fluid [Pa s], (F,)"""
 
 
+class Tensions(NamedTuple):
+    """The T rods whose loads are made those of a potential."""
+
+    span: Index
+    """Slots of the rod's elements, those of a ring without the image, (T, 2) int64"""
+    is_closed: NDArray[np.bool_]
+    """Whether the rod is a ring, (T,) bool"""
+
+
 class Drag(NamedTuple):
     """Forces and torques against velocities, by node and element."""
 
@@ -232,6 +241,8 @@ class Rings(NamedTuple):
 class Scene(NamedTuple):
     """All features of a simulation that are not in its Model."""
 
+    blocks: Index
+    """Slots of the rods that the stages of strains take at a time, so that they stay in the cache, (N, 2) int64"""
     rings: Rings
     touched: Index
     """Slots of the rods that point loads and joints act on, (T,) int64"""
@@ -241,6 +252,7 @@ class Scene(NamedTuple):
     wave_span: Index
     """Slots of the elements that a wave acts on, (W, 2) int64"""
     flows: Flows
+    tensions: Tensions
     drag: Drag
     joints: Joints
     rod_contacts: RodContacts

@@ -2,8 +2,8 @@
 
 The published rod is as thick as a third of its elements' length and stretches by a tenth; there the documented model
 does not keep its energy, whatever the time step. Its couples go with 1/E^3 of the dilatation at a joint, its forces
-with 1/e and its spin with J/e, without the tension that these changes call for. `ReciprocalTension` adds it. A slender
-rod hardly stretches, and the documented model keeps its energy.
+with 1/e and its spin with J/e, without the tension that these changes call for. The load `ReciprocalTension` adds it. A
+slender rod hardly stretches, and the documented model keeps its energy.
 """
 
 import numpy as np
@@ -15,8 +15,8 @@ from elastica_gym.cosserat import (
     CallBacks,
     CosseratRod,
     Forcing,
-    NoForces,
     PositionVerlet,
+    ReciprocalTension,
     integrate,
     stable_time_step,
 )
@@ -29,30 +29,7 @@ DURATION = 5.0
 
 
 class Simulator(BaseSystemCollection, Forcing, CallBacks):
-    """A rod, what its user adds to the model, and a look at its energies."""
-
-
-def squares(rod: CosseratRod) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return sigma . S sigma, kappa . B kappa and w . J w of elements and joints."""
-    return (np.einsum("ik,ijk,jk->k", rod.sigma, rod.shear_matrix, rod.sigma),
-            np.einsum("ik,ijk,jk->k", rod.kappa, rod.bend_matrix, rod.kappa),
-            np.einsum("ik,ijk,jk->k", rod.omega_collection, rod.mass_second_moment_of_inertia,
-                      rod.omega_collection))  # fmt: skip
-
-
-class ReciprocalTension(NoForces):
-    """The tension that makes the model's loads those of a potential, but for rounding and time steps."""
-
-    def apply_forces(self, system: CosseratRod, time: float = 0.0) -> None:
-        """Pull the nodes of each element together."""
-        shear, bend, spin = squares(system)
-        e, E = system.dilatation, system.voronoi_dilatation
-        tension = 0.5 * (spin / system.rest_lengths - shear) / e**2
-        tension[1:] -= 0.75 * bend / E**4
-        tension[:-1] -= 0.75 * bend / E**4
-        force = tension * system.tangents
-        system.external_forces[:, :-1] += force
-        system.external_forces[:, 1:] -= force
+    """A rod, the tension if it is wanted, and a look at energies."""
 
 
 class EnergyCallBack(CallBackBaseClass):
@@ -65,7 +42,8 @@ class EnergyCallBack(CallBackBaseClass):
         """Append time and energies."""
         elastic = system.compute_shear_energy(), system.compute_bending_energy()
         if self.is_reciprocal:
-            shear, bend, _ = squares(system)
+            shear = np.einsum("ik,ijk,jk->k", system.sigma, system.shear_matrix, system.sigma)
+            bend = np.einsum("ik,ijk,jk->k", system.kappa, system.bend_matrix, system.kappa)
             elastic = (0.5 * (shear * system.rest_lengths / system.dilatation).sum(),
                        0.5 * (bend * system.rest_voronoi_lengths / system.voronoi_dilatation**3).sum())  # fmt: skip
         self.times.append(time)

@@ -144,6 +144,7 @@ PYTHON = {
     ea.EndpointForcesSinusoidal: ("add_forcing_to", (0.01, 0.02, 2e-3), {}, ("apply_forces", "apply_torques")),
     ea.UniformForces: ("add_forcing_to", (0.05, Y), {}, ("apply_forces", "apply_torques")),
     ea.UniformTorques: ("add_forcing_to", (1e-3, X), {}, ("apply_forces", "apply_torques")),
+    ea.ReciprocalTension: ("add_forcing_to", (), {}, ("apply_forces", "apply_torques")),
     ea.SlenderBodyTheory: ("add_forcing_to", (0.3,), {}, ("apply_forces", "apply_torques")),
     ea.FixedConstraint: ("constrain", (), CLAMP, ("constrain_values", "constrain_rates")),
     ea.GeneralConstraint: ("constrain", (), dict(**CLAMP, rotational_constraint_selector=np.array([True, False, True])),
@@ -165,6 +166,50 @@ def test_subclass_that_calls_super(cls):
     expected, found = by_either(lambda s, a, b: getattr(s, declare)(a).using(cls, *args, **kwargs),
                                 lambda s, a, b: getattr(s, declare)(a).using(own, *args, **kwargs))  # fmt: skip
     assert np.abs(expected - found).max() < 1e-13
+
+
+# the tension that the documented model lacks
+
+
+def thick_ring():
+    rod = ea.CosseratRod.ring_rod(16, np.zeros(3), Z, Y, 0.5, 0.03, 1000.0, youngs_modulus=1e5, shear_modulus=4e4)
+    rod.rest_kappa[1] = 3.0
+    rod.rest_sigma[2] = 0.02
+    return rod
+
+
+def thick_rod():
+    rod = ea.CosseratRod.straight_rod(
+        12, np.zeros(3), Z, Y, 0.3, 0.03, 1000.0, youngs_modulus=1e5, shear_modulus=4e4
+    )
+    rod.rest_kappa[0] = 3.0
+    return rod
+
+
+class OwnTension(ea.ReciprocalTension):
+    """Is called, since it may be changed during a run."""
+
+
+@pytest.mark.parametrize("make", [thick_ring, thick_rod])
+def test_tension_is_that_of_its_formula_and_internal(make):
+    found, pushed = [], []
+    for tension in (ea.ReciprocalTension, OwnTension, None):
+        rod = make()
+        sim = simulator(rod)
+        if tension is not None:
+            sim.add_forcing_to(rod).using(tension)
+        sim.finalize()
+        rng = np.random.default_rng(0)
+        rod.velocity_collection[:] = 0.3 * rng.standard_normal(rod.velocity_collection.shape)
+        rod.omega_collection[:] = 10.0 * rng.standard_normal(rod.omega_collection.shape)
+        integrate(sim, 300)
+        found.append(rod.position_collection.copy())
+        pushed.append(rod.external_forces.copy())
+    assert np.abs(found[0] - found[1]).max() < 1e-12 < 1e-6 < np.abs(found[0] - found[2]).max()
+    torque = np.cross(found[0], pushed[0], axis=0).sum(axis=1)
+    assert np.abs(pushed[0]).max() > 1e-3
+    assert np.abs(pushed[0].sum(axis=1)).max() < 1e-13
+    assert np.abs(torque).max() < 1e-4 * np.abs(pushed[0]).max()
 
 
 class Pulled(ea.EndpointForces):
@@ -407,6 +452,13 @@ def test_script_that_steps_by_itself():
     for _ in range(50):
         time = do_step(stepper, stages, sim, time, DT)
     assert np.array_equal(rods[1].position_collection, expected)
+
+
+def test_progress_is_shown_if_it_is_wanted(capfd):
+    sim, _ = moving()
+    for wanted in (True, False):
+        ea.integrate(ea.PositionVerlet(), sim, 50 * DT, 50, progress_bar=wanted)
+        assert ("100.0 %  50 of 50 steps" in capfd.readouterr().err) == wanted
 
 
 def test_order_of_the_steppers():

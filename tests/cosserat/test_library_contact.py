@@ -202,6 +202,24 @@ def test_cylinder_rests_on_a_plane():
     assert body.position_collection[1, 0] == pytest.approx(0.05 - depth, abs=1e-7)
 
 
+RING_CONTACTS = {
+    "plane": lambda: (ea.RodPlaneContact, ea.Plane(np.zeros(3), Y)), "rod": lambda: (ea.RodRodContact, make_rod(X)),
+    "rigid body": lambda: (ea.RodCylinderContact, make_cylinder()),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", RING_CONTACTS)
+def test_a_ring_in_contact_is_refused(what):
+    ring, (cls, other), sim = ea.CosseratRod.ring_rod(
+        8, np.zeros(3), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e5
+    ), RING_CONTACTS[what](), Simulator()
+    sim.append(ring)
+    sim.append(other)
+    sim.detect_contact_between(ring, other).using(cls, k=1.0, nu=0.0)
+    with pytest.raises(NotImplementedError, match=f"a ring with a {what} is not supported"):
+        sim.finalize()
+
+
 def test_errors():
     rod, body, plane, sim = make_rod((0.0, 0.0, 0.0)), make_cylinder(), ea.Plane(np.zeros(3), Y), Simulator()
     for system in (rod, body, plane):

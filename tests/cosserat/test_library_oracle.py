@@ -1,6 +1,8 @@
 """Each feature of the documented library beside PyElastica 1.0.0: the same script, run by either."""
 
+import importlib
 import warnings
+from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
@@ -42,15 +44,14 @@ def simulator(lib):
     return Simulator()
 
 
-def run(lib, scene, n_steps=1000):
+def run(lib, scene, n_steps=1000, stepper="PositionVerlet"):
     sim = simulator(lib)
     systems = scene(lib, sim)
     sim.finalize()
     # after finalize, where theirs would damp the velocities once
     for seed, system in enumerate(systems):
         shake(system, seed)
-    stepper = lib.PositionVerlet()
-    lib.integrate(stepper, sim, n_steps * DT, n_steps, progress_bar=False)
+    lib.integrate(getattr(lib, stepper)(), sim, n_steps * DT, n_steps, progress_bar=False)
     return systems
 
 
@@ -142,6 +143,44 @@ def joined(cls, *args, **kwargs):
     return scene
 
 
+def side_by_side(lib, sim):
+    """Each pair of elements with a joint of its own: theirs takes the norm over all pairs of one for their distance."""
+    joints = importlib.import_module(f"{lib.__name__}.experimental.connection_contact_joint.parallel_connection")
+
+    class Mended(joints.SurfaceJointSideBySide):
+        """Theirs cannot be made: it passes arguments to a base that takes none."""
+
+        def __init__(self, **options):
+            vars(self).update(options)
+
+    rods = [make_rod(lib), make_rod(lib, start=(0.0205, 0.0, 0.0), n=10)]
+    for rod in rods:
+        sim.append(rod)
+    one, two, offset = joints.get_connection_vector_straight_straight_rod(*rods, (1, 9), (1, 9))
+    for j in range(8):
+        sim.connect(rods[0], rods[1], first_connect_idx=np.array([1 + j]), second_connect_idx=np.array([1 + j])).using(
+            Mended if lib is theirs else joints.SurfaceJointSideBySide, k=np.array([50.0]), nu=np.array([0.01]),
+            k_repulsive=np.array([1e4]), rod_one_direction_vec_in_material_frame=one[:, j : j + 1].copy(),
+            rod_two_direction_vec_in_material_frame=two[:, j : j + 1].copy(), offset_btw_rods=offset[j : j + 1],
+        )  # fmt: skip
+    return rods
+
+
+def off_axis(cls, **kwargs):
+    def scene(lib, sim):
+        path = f"{lib.__name__}.experimental.connection_contact_joint.generic_system_type_connection"
+        rods = [make_rod(lib), make_rod(lib, start=(0.02, 0.0, 0.3), n=8)]
+        for rod in rods:
+            sim.append(rod)
+        sim.connect(rods[0], rods[1], first_connect_idx=-1, second_connect_idx=0).using(
+            getattr(importlib.import_module(path), cls), point_system_one=np.array([0.01, 0.0, 0.002]),
+            point_system_two=np.array([-0.01, 0.001, 0.0]), **kwargs,
+        )  # fmt: skip
+        return rods
+
+    return scene
+
+
 # dampers
 
 
@@ -187,6 +226,8 @@ SCENES = {
     "hinge": joined("HingeJoint", k=50.0, nu=0.01, kt=0.02, normal_direction=np.array([1.0, 0.5, 0.0])),
     "fixed joint": joined("FixedJoint", k=50.0, nu=0.01, kt=0.01, nut=1e-5),
     "fixed joint at rest turned": joined("FixedJoint", k=50.0, nu=0.0, kt=0.01, rest_rotation_matrix=QUARTER),
+    "side by side": side_by_side, "off axis, free": off_axis("GenericSystemTypeFreeJoint", k=50.0, nu=0.01),
+    "off axis, fixed": off_axis("GenericSystemTypeFixedJoint", k=50.0, nu=0.01, kt=0.01, nut=1e-5),
     "uniform damper": damped("AnalyticalLinearDamper", uniform_damping_constant=5.0, time_step=DT),
     "physical damper": damped("AnalyticalLinearDamper", translational_damping_constant=0.02,
                               rotational_damping_constant=1e-6, time_step=DT),
@@ -207,6 +248,36 @@ def test_trajectory(scene):
         assert np.abs(a.position_collection - b.position_collection).max() < 1e-9
         assert np.abs(a.director_collection - b.director_collection).max() < 1e-7
     assert np.abs(expected[0].velocity_collection).max() > 0.0
+
+
+def test_trajectory_by_pefrl():
+    """Of a rod without loads and dampers, which act more than once a step in theirs."""
+    (expected,), (found,) = (run(lib, tapered, stepper="PEFRL") for lib in (theirs, ours))
+    assert np.abs(found.position_collection - expected.position_collection).max() < 1e-9
+
+
+@pytest.mark.parametrize("cls", ["MyCallBack", "ExportCallBack"])
+def test_callbacks_note_the_same(cls, tmp_path):
+    noted = []
+    for lib in (theirs, ours):
+        sim, folder, history = simulator(lib), tmp_path / lib.__name__, defaultdict(list)
+        rod = one_end_fixed(lib, sim)[0]
+        options = (dict(callback_params=history) if cls == "MyCallBack" else
+                   dict(filename="rod", directory=str(folder), method="npz", file_save_interval=1000))  # fmt: skip
+        sim.collect_diagnostics(rod).using(getattr(lib, cls), step_skip=7, **options)
+        sim.finalize()
+        shake(rod)
+        lib.integrate(lib.PositionVerlet(), sim, 100 * DT, 100, progress_bar=False)
+        if cls == "ExportCallBack":
+            sim.close()
+            (path,) = folder.glob("*.npz")
+            history = dict(np.load(path))
+        noted.append({name: np.array(values) for name, values in history.items()})
+    expected, found = noted
+    assert expected["step"].tolist() == list(range(0, 100, 7))
+    assert found.keys() >= expected.keys()
+    for name, values in expected.items():
+        assert np.abs(found[name] - values).max() < 1e-9 * max(1.0, np.abs(values).max()), name
 
 
 def test_attributes_agree():

@@ -1,14 +1,14 @@
 """Bending and twist: curvature at Voronoi points and the couples it causes."""
 
-from .compiler import FIRST, ONE, stage
+from .compiler import ONE, stage
 from .roots import inverse_sqrt
 from .rotations import half_angle_over_sine
 
 
 @stage
-def relative_rotation(n, Q, axis, cosine):
+def relative_rotation(first, n, Q, axis, cosine):
     """Compute the axial vector a of R = Q[k+1] Q[k]^T, and the cosine of its angle."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         j = k + ONE
         p00, p01, p02 = Q[0][0][k], Q[0][1][k], Q[0][2][k]
         p10, p11, p12 = Q[1][0][k], Q[1][1][k], Q[1][2][k]
@@ -26,7 +26,7 @@ def relative_rotation(n, Q, axis, cosine):
 
 
 @stage
-def logarithm(n, is_balanced, inv_rest_voronoi_length, cosine, kappa, lever):
+def logarithm(first, n, is_balanced, inv_rest_voronoi_length, cosine, kappa, lever):
     """Turn the axial vectors a in ``kappa`` into curvatures: Q[k+1] = exp(-D^ [kappa]x) Q[k].
 
     With c the cosine, kappa = -(theta/|a|) a / D^. With h = cos(theta/2), theta/|a| is (b/sin b)/h,
@@ -35,7 +35,7 @@ def logarithm(n, is_balanced, inv_rest_voronoi_length, cosine, kappa, lever):
     Leaves in ``lever`` what takes a couple from the joint to its elements (see `bending`): kappa D^/2,
     or, balanced, the same with the tangent of theta/2 for theta/2.
     """
-    for k in range(FIRST, n):
+    for k in range(first, n):
         a0, a1, a2 = kappa[0][k], kappa[1][k], kappa[2][k]
         c = cosine[k] if cosine[k] < 1.0 else 1.0
         a_squared = a0 * a0 + a1 * a1 + a2 * a2
@@ -52,7 +52,7 @@ def logarithm(n, is_balanced, inv_rest_voronoi_length, cosine, kappa, lever):
 
 @stage
 def bending(
-    n, length, kappa, lever, rest_voronoi_length, B, rest_kappa, rate, target, couple, before, after,
+    first, n, length, kappa, lever, rest_voronoi_length, B, rest_kappa, rate, target, couple, before, after,
 ):  # fmt: skip
     """Compute the couples on the elements before and after each joint, and activate the muscles.
 
@@ -63,7 +63,7 @@ def bending(
     The muscle couple joins tau_L, so it acts equally and oppositely on the two elements it joins. It
     approaches its target by the fraction ``rate`` a step.
     """
-    for k in range(FIRST, n):
+    for k in range(first, n):
         j = k + ONE
         k0, k1, k2 = kappa[0][k], kappa[1][k], kappa[2][k]
         h0, h1, h2 = lever[0][k], lever[1][k], lever[2][k]

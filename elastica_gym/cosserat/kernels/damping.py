@@ -2,13 +2,13 @@
 
 from math import exp
 
-from .compiler import FIRST, apart, stage
+from .compiler import apart, stage
 
 
 @stage
-def drag(n, v, w, node_drag, element_drag, force, torque):
+def drag(first, n, v, w, node_drag, element_drag, force, torque):
     """Add forces and torques against velocities."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         a, b = node_drag[k], element_drag[k]
         force[0][k] -= a * v[0][k]
         force[1][k] -= a * v[1][k]
@@ -19,9 +19,9 @@ def drag(n, v, w, node_drag, element_drag, force, torque):
 
 
 @stage
-def decay(n, node_factor, element_factor, v, w):
+def decay(first, n, node_factor, element_factor, v, w):
     """Multiply velocities by factors."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         a, b = node_factor[k], element_factor[k]
         v[0][k] *= a
         v[1][k] *= a
@@ -32,9 +32,9 @@ def decay(n, node_factor, element_factor, v, w):
 
 
 @stage
-def dilating_decay(n, dt, rate, length, inv_rest_length, w):
+def dilating_decay(first, n, dt, rate, length, inv_rest_length, w):
     """Multiply angular velocities by exp(-rate e dt)."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         h = -dt * length[k] * inv_rest_length[k]
         w[0][k] *= exp(h * rate[0][k])
         w[1][k] *= exp(h * rate[1][k])

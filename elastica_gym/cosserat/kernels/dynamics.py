@@ -1,12 +1,12 @@
 """Kick: velocities change with the loads, and are damped."""
 
-from .compiler import FIRST, stage
+from .compiler import stage
 
 
 @stage
-def dynamics(n, dt, force, torque, length, inv_rest_length, inv_mass, inv_inertia, decay, v, w):
+def dynamics(first, n, dt, force, torque, length, inv_rest_length, inv_mass, inv_inertia, decay, v, w):
     """Advance v by dt F/m and w by dt e J^-1 T, then multiply both by exp(-c dt)."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         b = dt * inv_mass[k]
         v[0][k] = (v[0][k] + b * force[0][k]) * decay[k]
         v[1][k] = (v[1][k] + b * force[1][k]) * decay[k]

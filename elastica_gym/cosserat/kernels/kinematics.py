@@ -1,13 +1,13 @@
 """Drift: positions and directors move with their velocities."""
 
-from .compiler import FIRST, stage
+from .compiler import stage
 from .rotations import sine_over_angle, versine_over_angle_squared
 
 
 @stage
-def kinematics(n, h, x, v, Q, w):
+def kinematics(first, n, h, x, v, Q, w):
     """Advance x by h v, and Q by the rotation exp(-h [w]x), over a time h (Gazzola et al. 2018, eq. 4.4)."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         x[0][k] += h * v[0][k]
         x[1][k] += h * v[1][k]
         x[2][k] += h * v[2][k]
@@ -41,9 +41,9 @@ def kinematics(n, h, x, v, Q, w):
 
 
 @stage
-def orthonormalise(n, Q):
+def orthonormalise(first, n, Q):
     """Take rounding out of the directors: one Newton step Q <- (3 I - Q Q^T) Q / 2 to the nearest rotation."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         q00, q01, q02 = Q[0][0][k], Q[0][1][k], Q[0][2][k]
         q10, q11, q12 = Q[1][0][k], Q[1][1][k], Q[1][2][k]
         q20, q21, q22 = Q[2][0][k], Q[2][1][k], Q[2][2][k]

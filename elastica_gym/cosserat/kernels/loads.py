@@ -2,18 +2,18 @@
 
 from math import cos, sin
 
-from .compiler import FIRST, ONE, inner, stage
+from .compiler import ONE, inner, stage
 
 
 @stage
-def balance(n, stress, before, after, mass, gravity, force, torque):
+def balance(first, n, stress, before, after, mass, gravity, force, torque):
     """Sum the internal loads and gravity (Gazzola et al. 2018, eq. 2.20, 2.21).
 
     A node gets the difference of n between its elements, an element the couples of the joints around it:
     it is the one before the next joint, and after the last. Adds to the torques of strains.
     """
     g0, g1, g2 = gravity[0], gravity[1], gravity[2]
-    for k in range(FIRST, n):
+    for k in range(first, n):
         i = k - ONE
         force[0][k] = stress[0][k] - stress[0][i] + mass[k] * g0
         force[1][k] = stress[1][k] - stress[1][i] + mass[k] * g1
@@ -24,9 +24,9 @@ def balance(n, stress, before, after, mass, gravity, force, torque):
 
 
 @stage
-def external(n, applied_force, applied_torque, force, torque):
+def external(first, n, applied_force, applied_torque, force, torque):
     """Add the loads that Control holds."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         force[0][k] += applied_force[0][k]
         force[1][k] += applied_force[1][k]
         force[2][k] += applied_force[2][k]
@@ -36,9 +36,9 @@ def external(n, applied_force, applied_torque, force, torque):
 
 
 @stage
-def clear(n, force, torque):
+def clear(first, n, force, torque):
     """Set loads to zero."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         force[0][k] = force[1][k] = force[2][k] = 0.0
         torque[0][k] = torque[1][k] = torque[2][k] = 0.0
 
@@ -62,18 +62,18 @@ def external_at(slots, applied_force, applied_torque, force, torque):
 
 
 @stage
-def dead_force(n, load, force):
+def dead_force(first, n, load, force):
     """Add forces that are constant in the lab."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         force[0][k] += load[0][k]
         force[1][k] += load[1][k]
         force[2][k] += load[2][k]
 
 
 @stage
-def dead_torque(n, load, Q, torque):
+def dead_torque(first, n, load, Q, torque):
     """Add torques that are constant in the lab."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         t0, t1, t2 = load[0][k], load[1][k], load[2][k]
         torque[0][k] += Q[0][0][k] * t0 + Q[0][1][k] * t1 + Q[0][2][k] * t2
         torque[1][k] += Q[1][0][k] * t0 + Q[1][1][k] * t1 + Q[1][2][k] * t2
@@ -81,9 +81,9 @@ def dead_torque(n, load, Q, torque):
 
 
 @stage
-def viscosity(n, v, w, length, nu, force, torque):
+def viscosity(first, n, v, w, length, nu, force, torque):
     """Subtract the documented damping: nu l times the mean nodal velocity, and nu_torque l w."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         # half of each element's force goes to each of its nodes; a ghost's nu is zero
         i, j = k - ONE, k + ONE
         a, b = 0.25 * nu[0][i] * length[i], 0.25 * nu[0][k] * length[k]
@@ -97,11 +97,11 @@ def viscosity(n, v, w, length, nu, force, torque):
 
 
 @stage
-def wave(n, strength, phase, axis, sine, cosine, Q, torque):
+def wave(first, n, strength, phase, axis, sine, cosine, Q, torque):
     """Add a travelling wave of muscle couple at the angle ``phase`` = omega t (Gazzola et al. 2018, sec. 5.2)."""
     S, C = strength * sin(phase), strength * cos(phase)
     a0, a1, a2 = axis[0], axis[1], axis[2]
-    for k in range(FIRST, n):
+    for k in range(first, n):
         m = S * sine[k] + C * cosine[k]
         torque[0][k] += m * (Q[0][0][k] * a0 + Q[0][1][k] * a1 + Q[0][2][k] * a2)
         torque[1][k] += m * (Q[1][0][k] * a0 + Q[1][1][k] * a1 + Q[1][2][k] * a2)

@@ -5,7 +5,7 @@ net force, so it comes after every other load. n is the plane's normal, a the in
 of the element, b = a x n the direction it rolls in, N the force with which the plane carries it.
 """
 
-from .compiler import FIRST, ONE, inline, stage
+from .compiler import ONE, inline, stage
 from .roots import inverse_sqrt
 
 
@@ -27,13 +27,13 @@ def towards(direction, forward, backward):
 
 @stage
 def touch(
-    n, normal, origin, k_plane, nu_plane, surface_tol, x, radius, share, force,
+    first, n, normal, origin, k_plane, nu_plane, surface_tol, x, radius, share, force,
     response, damping, carried, axial,
 ):  # fmt: skip
     """Compute the plane's response to push and penetration, how it damps, N, and a."""
     n0, n1, n2 = normal[0], normal[1], normal[2]
     height = n0 * origin[0] + n1 * origin[1] + n2 * origin[2]
-    for k in range(FIRST, n):
+    for k in range(first, n):
         j = k + ONE
         s0, s1 = share[0][k], share[1][k]
         d0, d1, d2 = x[0][j] - x[0][k], x[1][j] - x[1][k], x[2][j] - x[2][k]
@@ -61,7 +61,7 @@ def touch(
 
 @stage
 def slip(
-    n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response,
+    first, n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response,
 ):  # fmt: skip
     """Compute the velocity of the element's lowest point along a and b, and a in the material frame.
 
@@ -69,7 +69,7 @@ def slip(
     what resists the element's velocity along n.
     """
     n0, n1, n2 = normal[0], normal[1], normal[2]
-    for k in range(FIRST, n):
+    for k in range(first, n):
         j = k + ONE
         p0, p1 = weight[0][k], weight[1][k]
         u0, u1, u2 = p0 * v[0][k] + p1 * v[0][j], p0 * v[1][k] + p1 * v[1][j], p0 * v[2][k] + p1 * v[2][j]
@@ -86,8 +86,8 @@ def slip(
 
 @stage
 def slide(
-    n, normal, slip_tol, mu, mu_static, slip_axial, slip_rolling, response, carried, radius, axial, axial_material,
-    push, hold, hold_rolling, torque, normal_force,
+    first, n, normal, slip_tol, mu, mu_static, slip_axial, slip_rolling, response, carried, radius, axial,
+    axial_material, push, hold, hold_rolling, torque, normal_force,
 ):  # fmt: skip
     """Compute kinetic friction, opposite to the slip, with the torque of its rolling part.
 
@@ -100,7 +100,7 @@ def slide(
     may_hold = mu_static[0] + mu_static[1] + mu_static[2]
     inv_slip_tol = 1.0 / slip_tol
     n_sticking = 0
-    for k in range(FIRST, n):
+    for k in range(first, n):
         va, vb, N = slip_axial[k], slip_rolling[k], carried[k]
         inv_speed = inverse_sqrt(va * va + vb * vb)
         sa, sb = sticking(va, inv_slip_tol), sticking(vb, inv_slip_tol)
@@ -125,7 +125,7 @@ def slide(
 
 @stage
 def stick(
-    n, normal, mu_static, radius, share, force, axial, axial_material, hold, hold_rolling,
+    first, n, normal, mu_static, radius, share, force, axial, axial_material, hold, hold_rolling,
     push, torque,
 ):  # fmt: skip
     """Compute static friction from the forces that the response and kinetic friction have already changed.
@@ -134,7 +134,7 @@ def stick(
     """
     n0, n1, n2 = normal[0], normal[1], normal[2]
     forward, backward = mu_static[0], mu_static[1]
-    for k in range(FIRST, n):
+    for k in range(first, n):
         j = k + ONE
         f0 = share[0][k] * force[0][k] + share[1][k] * force[0][j]
         f1 = share[0][k] * force[1][k] + share[1][k] * force[1][j]
@@ -166,9 +166,9 @@ def stick(
 
 
 @stage
-def to_nodes(n, push, force):
+def to_nodes(first, n, push, force):
     """Give half of each element's force to each of its nodes."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         i = k - ONE
         force[0][k] += 0.5 * (push[0][i] + push[0][k])
         force[1][k] += 0.5 * (push[1][i] + push[1][k])

@@ -7,9 +7,9 @@ from math import cos, exp, sin
 
 import numpy as np
 
-from ..model import BLOCK, LEAD
+from ..model import BLOCK
 from .bodies import orthonormalise_bodies
-from .compiler import apart, entry, inner
+from .compiler import FIRST, ONE, apart, entry, inner
 from .constraints import hold, move
 from .damping import decay, decay_bodies, dilating_decay, drag, smooth, smooth_ring
 from .ends import add_to
@@ -19,9 +19,9 @@ from .joints import join
 from .kinematics import orthonormalise
 from .loads import clear, clear_at, dead_force, dead_torque, external, external_at, viscosity, wave
 from .pairs import ground_bodies, touch_bodies, touch_rods
-from .plane import slide, slip, stick, to_nodes, touch
 from .rings import follow, hand_back
-from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows
+from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows, settle
+from .tension import reciprocate
 from .vectors import add, plus, times, to_material, vector
 
 # where there are loads from outside: nowhere, in a few slots, everywhere
@@ -29,28 +29,9 @@ UNLOADED, SPARSE, DENSE = 0, 1, 2
 
 
 @inner
-def tail(a, k):
-    """Return three rows from slot k on."""
-    return a[0][k:], a[1][k:], a[2][k:]
-
-
-@inner
-def tails(a, k):
-    """Return the nine rows of directors from slot k on."""
-    return tail(a[0], k), tail(a[1], k), tail(a[2], k)
-
-
-@inner
-def work_tail(a, k):
-    """Return the rows of scratch from slot k on."""
-    return (a[0][k:], a[1][k:], a[2][k:], a[3][k:], a[4][k:], a[5][k:], a[6][k:], a[7][k:],
-            a[8][k:], a[9][k:], a[10][k:], a[11][k:], a[12][k:], a[13][k:], a[14][k:], a[15][k:])  # fmt: skip
-
-
-@inner
-def window(span):
-    """Return where rows are cut, and the end in the rest, so that stages see the span alone."""
-    return span[0] - LEAD, np.uint64(span[1] - span[0] + LEAD)
+def ends(span):
+    """Return the first slot of a span and the one after its last."""
+    return np.uint64(span[0]), np.uint64(span[1])
 
 
 @inner
@@ -110,18 +91,23 @@ def external_loads(model, scene, state, control, hooks, n):
         point_forces(scene.point_loads, time, force, state.body_force[0])
     dead_loads_on_bodies(loads, state.body_Q[0], state.body_force[0], state.body_torque[0])
     if loads.has_force:
-        dead_force(n, rows(loads.force), rows(force))
+        dead_force(FIRST, n, rows(loads.force), rows(force))
     if loads.has_torque:
-        dead_torque(n, rows(loads.torque), matrix(Q), rows(torque))
+        dead_torque(FIRST, n, rows(loads.torque), matrix(Q), rows(torque))
     waves = scene.waves
     for j in range(waves.ramp_time.size):
-        k, m = window(scene.wave_span[j])
+        k, m = ends(scene.wave_span[j])
         strength = time / waves.ramp_time[j] if time < waves.ramp_time[j] else 1.0
-        wave(m, strength, waves.angular_frequency[j] * time, waves.axis[j], waves.sine[j][k:], waves.cosine[j][k:],
-             tails(Q, k), tail(torque, k))  # fmt: skip
+        wave(k, m, strength, waves.angular_frequency[j] * time, waves.axis[j], waves.sine[j], waves.cosine[j],
+             matrix(Q), rows(torque))  # fmt: skip
     for j in range(scene.flows.viscosity.size):
         resist(scene.flows.span[j, 0], scene.flows.span[j, 1], scene.flows.viscosity[j], state.x[0], state.v[0],
                model.weight, state.length[0], state.radius[0], force)  # fmt: skip
+    for j in range(scene.tensions.is_closed.size):
+        first, last = ends(scene.tensions.span[j])
+        reciprocate(first, last, scene.tensions.is_closed[j], state.x[0], Q, state.w[0], state.length[0],
+                    state.kappa[0], model.rest_length, model.rest_voronoi_length, control.rest_sigma[0],
+                    control.rest_kappa[0], model.shear, model.bend, model.inertia, force)  # fmt: skip
     if scene.joints.stiffness.size > 0:
         join(scene.joints, state.x[0], state.v[0], Q, state.w[0], force, torque, state.body_x[0], state.body_v[0],
              state.body_Q[0], state.body_w[0], state.body_force[0], state.body_torque[0])  # fmt: skip
@@ -142,7 +128,7 @@ def external_loads(model, scene, state, control, hooks, n):
 def clear_loads(scene, state, control, n, loading):
     """Set the loads from outside to zero."""
     if loading == DENSE:
-        clear(n, rows(control.force[0]), rows(control.torque[0]))
+        clear(FIRST, n, rows(control.force[0]), rows(control.torque[0]))
     else:
         clear_at(scene.touched, control.force[0], control.torque[0])
     state.body_force[0, :, :] = 0.0
@@ -153,7 +139,7 @@ def clear_loads(scene, state, control, n, loading):
 def add_loads(scene, state, control, n, loading):
     """Add the loads from outside to the net loads."""
     if loading == DENSE:
-        external(n, rows(control.force[0]), rows(control.torque[0]), rows(state.force[0]), rows(state.torque[0]))
+        external(FIRST, n, rows(control.force[0]), rows(control.torque[0]), rows(state.force[0]), rows(state.torque[0]))
     else:
         external_at(scene.touched, control.force[0], control.torque[0], state.force[0], state.torque[0])
 
@@ -164,49 +150,21 @@ def resistance(model, scene, state, n):
     s = state
     force, torque, v, w = rows(s.force[0]), rows(s.torque[0]), rows(s.v[0]), rows(s.w[0])
     if model.is_viscous:
-        viscosity(n, v, w, s.length[0], (model.viscosity[0], model.viscosity[1]), force, torque)
+        viscosity(FIRST, n, v, w, s.length[0], (model.viscosity[0], model.viscosity[1]), force, torque)
     if scene.drag.is_on:
-        drag(n, v, w, scene.drag.force, scene.drag.torque, force, torque)
-
-
-@inner
-def settle(planes, j, n, x, v, Q, w, radius, share, weight, work, force, torque, normal_force):
-    """Add the response and friction of plane j to the slots that rows are cut to, as `step.ground` does to all.
-
-    ``work`` are 16 rows to write on.
-    """
-    p, normal = planes, planes.normal[j]
-    push, axial, axial_material = (work[0], work[1], work[2]), (work[3], work[4], work[5]), (work[6], work[7], work[8])
-    hold, hold_rolling, response, carried, slip_axial, slip_rolling, damping = work[9:]
-
-    touch(n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, radius, share,
-          force, response, damping, carried, axial)  # fmt: skip
-    slip(n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response)
-    n_sticking = slide(
-        n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j], slip_axial, slip_rolling,
-        response, carried, radius, axial, axial_material, push, hold, hold_rolling, torque, normal_force,
-    )  # fmt: skip
-    to_nodes(n, push, force)
-    if n_sticking > 0:
-        stick(n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
-              push, torque)  # fmt: skip
-        to_nodes(n, push, force)
+        drag(FIRST, n, v, w, scene.drag.force, scene.drag.torque, force, torque)
 
 
 @apart
 def ground(model, scene, state):
     """Add the response and friction of each plane to the rods that it acts on, after all other loads."""
-    m, s = model, state
-    s.normal_force[0, :] = 0.0
+    state.normal_force[0, :] = 0.0
     for j in range(scene.planes.stiffness.size):
-        k, end = window(scene.plane_span[j])
-        rows_to_write = work_tail(s.scratch[0], k)
+        first, n = ends(scene.plane_span[j])
         # the first node reads a push from before
         for d in range(3):
-            rows_to_write[d][LEAD - 1] = 0.0
-        settle(scene.planes, j, end, tail(s.x[0], k), tail(s.v[0], k), tails(s.Q[0], k), tail(s.w[0], k),
-               s.radius[0][k:], (m.share[0][k:], m.share[1][k:]), (m.weight[0][k:], m.weight[1][k:]), rows_to_write,
-               tail(s.force[0], k), tail(s.torque[0], k), s.normal_force[0][k:])  # fmt: skip
+            state.scratch[0, d, first - ONE] = 0.0
+        settle(model, state, scene.planes, j, 0, first, n)
 
 
 @inner
@@ -214,9 +172,9 @@ def damp(model, scene, state, hooks, n, dt):
     """Damp velocities over a time step. Returns whether to stop."""
     d, v, w = scene.decay, rows(state.v[0]), rows(state.w[0])
     if d.is_on:
-        decay(n, d.node_factor, d.element_factor, v, w)
+        decay(FIRST, n, d.node_factor, d.element_factor, v, w)
     if d.is_dilating:
-        dilating_decay(n, dt, rows(d.dilating_rate), state.length[0], model.inv_rest_length, w)
+        dilating_decay(FIRST, n, dt, rows(d.dilating_rate), state.length[0], model.inv_rest_length, w)
     if d.is_on_bodies:
         decay_bodies(dt, d.body_rate, d.body_turn_rate, state.body_v[0], state.body_w[0])
     for j in range(scene.filters.order.size):
@@ -259,7 +217,7 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
             if stage == n_kicks:
                 state.step[0] += 1
                 if state.step[0] % ORTHONORMALISE_EVERY == 0:
-                    orthonormalise(n, matrix(state.Q[0]))
+                    orthonormalise(FIRST, n, matrix(state.Q[0]))
                     orthonormalise_bodies(state.body_Q[0])
             if constrain_values(scene, state, hooks) != 0:
                 return 1
@@ -267,7 +225,9 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
                 break
             if scene.rings.first.size > 0:
                 follow(scene.rings, state.x[0], state.v[0], state.Q[0], state.w[0])
-            internal(model, state, control, 0, n, dt)
+            for b in range(scene.blocks.shape[0]):
+                first, end = ends(scene.blocks[b])
+                internal(model, state, control, 0, first, end, dt)
             if loading != UNLOADED:
                 if step + stage > 0:
                     clear_loads(scene, state, control, n, loading)

@@ -36,14 +36,14 @@ def matrix(a):
 @inner
 def drift(model, state, i, n, h):
     """Move environment i by a time h at its present velocities."""
-    kinematics(n, h, rows(state.x[i]), rows(state.v[i]), matrix(state.Q[i]), rows(state.w[i]))
+    kinematics(FIRST, n, h, rows(state.x[i]), rows(state.v[i]), matrix(state.Q[i]), rows(state.w[i]))
     if model.cylinders.mass.size > 0:
         drift_bodies(h, state.body_x[i], state.body_v[i], state.body_Q[i], state.body_w[i])
 
 
 @inner
-def internal(model, state, control, i, n, dt):
-    """Compute the forces and torques of environment i's strains, and gravity."""
+def internal(model, state, control, i, first, n, dt):
+    """Compute the forces and torques of strains, and gravity, of the rods from slot ``first`` to n - 1."""
     m, s, c = model, state, control
     x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
     force, torque, kappa = rows(s.force[i]), rows(s.torque[i]), rows(s.kappa[i])
@@ -51,14 +51,14 @@ def internal(model, state, control, i, n, dt):
     inv_length, cosine, lever = s.scratch[i, 9], s.scratch[i, 10], rows(s.scratch[i, 11:])
     rate = 1.0 - exp(-dt / m.activation_time) if m.activation_time > 0.0 else 1.0
 
-    stretch(n, x, m.volume_root, s.length[i], inv_length, s.radius[i])
-    strains(n, x, v, Q, w, inv_length, m.rest_length, m.inv_rest_length, rows(c.rest_sigma[i]), rows(m.shear),
+    stretch(first, n, x, m.volume_root, s.length[i], inv_length, s.radius[i])
+    strains(first, n, x, v, Q, w, inv_length, m.rest_length, m.inv_rest_length, rows(c.rest_sigma[i]), rows(m.shear),
             rows(m.inertia), stress, torque)  # fmt: skip
-    relative_rotation(n, Q, kappa, cosine)
-    logarithm(n, m.is_balanced, m.inv_rest_voronoi_length, cosine, kappa, lever)
-    bending(n, s.length[i], kappa, lever, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]), rate,
+    relative_rotation(first, n, Q, kappa, cosine)
+    logarithm(first, n, m.is_balanced, m.inv_rest_voronoi_length, cosine, kappa, lever)
+    bending(first, n, s.length[i], kappa, lever, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]), rate,
             rows(c.couple[i]), rows(s.couple[i]), before, after)  # fmt: skip
-    balance(n, stress, before, after, m.mass, m.gravity, force, torque)
+    balance(first, n, stress, before, after, m.mass, m.gravity, force, torque)
 
 
 @inner
@@ -67,13 +67,13 @@ def applied(model, state, control, i, n, time):
     m, s, c = model, state, control
     force, torque = rows(s.force[i]), rows(s.torque[i])
     if m.is_loaded:
-        external(n, rows(c.force[i]), rows(c.torque[i]), force, torque)
+        external(FIRST, n, rows(c.force[i]), rows(c.torque[i]), force, torque)
     if m.is_viscous:
-        viscosity(n, rows(s.v[i]), rows(s.w[i]), s.length[i], (m.viscosity[0], m.viscosity[1]), force, torque)
+        viscosity(FIRST, n, rows(s.v[i]), rows(s.w[i]), s.length[i], (m.viscosity[0], m.viscosity[1]), force, torque)
     for j in range(m.waves.ramp_time.size):
         waves, ramp = m.waves, m.waves.ramp_time[j]
         strength = time / ramp if time < ramp else 1.0
-        wave(n, strength, waves.angular_frequency[j] * time, waves.axis[j], waves.sine[j], waves.cosine[j],
+        wave(FIRST, n, strength, waves.angular_frequency[j] * time, waves.axis[j], waves.sine[j], waves.cosine[j],
              matrix(s.Q[i]), torque)  # fmt: skip
 
 
@@ -98,9 +98,9 @@ def contacts(model, state, i, n):
 
 
 @inner
-def ground(model, state, i, n, dt):
-    """Add the response and friction of the planes to environment i, which answer to all other loads."""
-    m, s, p = model, state, model.planes
+def settle(model, state, planes, j, i, first, n):
+    """Add the response and friction of plane j to the rods from slot ``first`` to n - 1 of environment i."""
+    m, s, p, normal = model, state, planes, planes.normal[j]
     x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
     force, torque, radius = rows(s.force[i]), rows(s.torque[i]), s.radius[i]
     push, axial, axial_material = rows(s.scratch[i]), rows(s.scratch[i, 3:]), rows(s.scratch[i, 6:])
@@ -108,21 +108,28 @@ def ground(model, state, i, n, dt):
     slip_axial, slip_rolling, damping = s.scratch[i, 13], s.scratch[i, 14], s.scratch[i, 15]
     share, weight = (m.share[0], m.share[1]), (m.weight[0], m.weight[1])
 
+    touch(first, n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, radius, share,
+          force, response, damping, carried, axial)  # fmt: skip
+    slip(first, n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling,
+         response)  # fmt: skip
+    n_sticking = slide(
+        first, n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j], slip_axial, slip_rolling,
+        response, carried, radius, axial, axial_material, push, hold, hold_rolling, torque, s.normal_force[i],
+    )  # fmt: skip
+    to_nodes(first, n, push, force)
+    if n_sticking > 0:
+        stick(first, n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
+              push, torque)  # fmt: skip
+        to_nodes(first, n, push, force)
+
+
+@inner
+def ground(model, state, i, n, dt):
+    """Add the response and friction of the planes to environment i, which answer to all other loads."""
+    m, s, p = model, state, model.planes
     s.normal_force[i, :] = 0.0
     for j in range(p.stiffness.size):
-        normal = p.normal[j]
-        touch(n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, radius, share,
-              force, response, damping, carried, axial)  # fmt: skip
-        slip(n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response)
-        n_sticking = slide(
-            n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j], slip_axial, slip_rolling,
-            response, carried, radius, axial, axial_material, push, hold, hold_rolling, torque, s.normal_force[i],
-        )  # fmt: skip
-        to_nodes(n, push, force)
-        if n_sticking > 0:
-            stick(n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
-                  push, torque)  # fmt: skip
-            to_nodes(n, push, force)
+        settle(m, s, p, j, i, FIRST, n)
     if m.cylinders.mass.size > 0:
         cylinders_on_planes(dt, m.cylinders, p, s.body_x[i], s.body_v[i], s.body_Q[i], s.body_w[i], s.body_contact[i],
                             s.body_force[i], s.body_torque[i])  # fmt: skip
@@ -132,7 +139,7 @@ def ground(model, state, i, n, dt):
 def kick(model, state, i, n, dt):
     """Change the velocities of environment i by its net loads over a time dt, and damp them."""
     m, s = model, state
-    dynamics(n, dt, rows(s.force[i]), rows(s.torque[i]), s.length[i], m.inv_rest_length, m.inv_mass,
+    dynamics(FIRST, n, dt, rows(s.force[i]), rows(s.torque[i]), s.length[i], m.inv_rest_length, m.inv_mass,
              rows(m.inv_inertia), s.decay[i], rows(s.v[i]), rows(s.w[i]))  # fmt: skip
     if m.cylinders.mass.size > 0:
         kick_bodies(dt, m.cylinders.mass, m.cylinders.inertia, s.body_force[i], s.body_torque[i], s.body_v[i],
@@ -154,14 +161,14 @@ def advance_queue(model, state, control, queue, last, dt, n_substeps):
 
         drift(model, state, i, n, 0.5 * dt if n_substeps > 0 else 0.0)
         for step in range(n_substeps):
-            internal(model, state, control, i, n, dt)
+            internal(model, state, control, i, FIRST, n, dt)
             applied(model, state, control, i, n, start + (step + 0.5) * dt)
             contacts(model, state, i, n)
             ground(model, state, i, n, dt)
             kick(model, state, i, n, dt)
             drift(model, state, i, n, dt if step < n_substeps - 1 else 0.5 * dt)
             if (state.step[i] + step + 1) % ORTHONORMALISE_EVERY == 0:
-                orthonormalise(n, matrix(state.Q[i]))
+                orthonormalise(FIRST, n, matrix(state.Q[i]))
                 orthonormalise_bodies(state.body_Q[i])
         # once a call: what neighbours write shares a cache line with what other threads read
         state.step[i] += n_substeps

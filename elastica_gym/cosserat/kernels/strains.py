@@ -1,13 +1,13 @@
 """Shear and stretch: lengths, element strains, the internal force they cause, and their torques."""
 
-from .compiler import FIRST, ONE, stage
+from .compiler import ONE, stage
 from .roots import TINY, inverse_fourth_root
 
 
 @stage
-def stretch(n, x, volume_root, length, inv_length, radius):
+def stretch(first, n, x, volume_root, length, inv_length, radius):
     """Compute l, 1/l and r = sqrt(V/(pi l))."""
-    for k in range(FIRST, n):
+    for k in range(first, n):
         j = k + ONE
         d0, d1, d2 = x[0][j] - x[0][k], x[1][j] - x[1][k], x[2][j] - x[2][k]
         l_squared = d0 * d0 + d1 * d1 + d2 * d2
@@ -21,13 +21,13 @@ def stretch(n, x, volume_root, length, inv_length, radius):
 
 @stage
 def strains(
-    n, x, v, Q, w, inv_length, rest_length, inv_rest_length, rest_sigma, S, J, stress, torque,
+    first, n, x, v, Q, w, inv_length, rest_length, inv_rest_length, rest_sigma, S, J, stress, torque,
 ):  # fmt: skip
     """Compute n = Q^T n_L / e and the element's own torques (Gazzola et al. 2018, eq. 2.20, 2.21).
 
     The torques are those of shear, (Q t x n_L) l^, and of transport, (J w/e) x w + (J w/e^2) de/dt.
     """
-    for k in range(FIRST, n):
+    for k in range(first, n):
         j = k + ONE
         d0, d1, d2 = x[0][j] - x[0][k], x[1][j] - x[1][k], x[2][j] - x[2][k]
         u0, u1, u2 = v[0][j] - v[0][k], v[1][j] - v[1][k], v[2][j] - v[2][k]

@@ -1,0 +1,95 @@
+"""Joints between any points that move with rods and rigid bodies."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...joint import ConnectionBase, FixedJoint
+from ...model import Array
+
+
+def compute_position_of_point(system: Any, point: ArrayLike, index: int) -> Array:
+    """Return a point that moves with a node and its element, or a body [m], (3,).
+
+    Parameters
+    ----------
+    system : CosseratRod or RigidBodyBase
+    point : array_like
+        From the node, or the body's centre, in the material frame [m], (3,).
+    index : int
+        Number of the node and the element.
+    """
+    return system.position_collection[..., index] + system.director_collection[..., index].T @ np.asarray(point)
+
+
+def compute_velocity_of_point(system: Any, point: ArrayLike, index: int) -> Array:
+    """Return the velocity of such a point [m/s], (3,)."""
+    turning = np.cross(system.omega_collection[..., index], np.asarray(point))
+    return system.velocity_collection[..., index] + system.director_collection[..., index].T @ turning
+
+
+class GenericSystemTypeFreeJoint(ConnectionBase):
+    """A ball joint between two points: a spring and a damper.
+
+    Parameters
+    ----------
+    k : float
+        Force per distance [N/m].
+    nu : float
+        Force per relative velocity [N s/m].
+    point_system_one, point_system_two : array_like, optional
+        The points, from the node or the body's centre, in the material frame [m], (3,); zero unless given.
+    """
+
+    def __init__(
+        self, k: float, nu: float, point_system_one: ArrayLike | None = None,
+        point_system_two: ArrayLike | None = None, **kwargs: Any,
+    ) -> None:  # fmt: skip
+        self.k, self.nu = float(k), float(nu)
+        self.point_system_one, self.point_system_two = (
+            np.zeros(3) if point is None else np.array(point, dtype=np.float64)
+            for point in (point_system_one, point_system_two)
+        )
+
+    def apply_forces(
+        self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
+    ) -> None:
+        """Add k (x2 - x1) + nu (v2 - v1) to one, its opposite to two, and the torques of both."""
+        ends = (system_one, self.point_system_one, index_one), (system_two, self.point_system_two, index_two)
+        x1, x2 = (compute_position_of_point(*end) for end in ends)
+        v1, v2 = (compute_velocity_of_point(*end) for end in ends)
+        force = self.k * (x2 - x1) + self.nu * (v2 - v1)
+        for (system, point, index), push in zip(ends, (force, -force), strict=True):
+            system.external_forces[..., index] += push
+            system.external_torques[..., index] += np.cross(point, system.director_collection[..., index] @ push)
+
+    def apply_torques(
+        self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
+    ) -> None:
+        """Do nothing: the joint turns freely."""
+
+
+class GenericSystemTypeFixedJoint(GenericSystemTypeFreeJoint):
+    """A joint between two points that also holds the directions of two systems at a rest rotation.
+
+    Parameters
+    ----------
+    k, nu, point_system_one, point_system_two
+        As for `GenericSystemTypeFreeJoint`.
+    kt, nut, rest_rotation_matrix
+        As for `FixedJoint`.
+    """
+
+    def __init__(
+        self, k: float, nu: float, kt: float, nut: float = 0.0, point_system_one: ArrayLike | None = None,
+        point_system_two: ArrayLike | None = None, rest_rotation_matrix: ArrayLike | None = None, **kwargs: Any,
+    ) -> None:  # fmt: skip
+        super().__init__(k, nu, point_system_one, point_system_two)
+        self.turn = FixedJoint(k, nu, kt, nut, rest_rotation_matrix)
+
+    def apply_torques(
+        self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
+    ) -> None:
+        """Add the torque of a `FixedJoint` to two, and its opposite to one."""
+        self.turn.apply_torques(system_one, index_one, system_two, index_two, time)
