@@ -29,6 +29,7 @@ from .scene import (
     Rings,
     RodContacts,
     Scene,
+    Sides,
     Tensions,
 )
 from .surroundings import Plane, net_couple
@@ -86,6 +87,7 @@ class SceneBuilder:
         self._tensions: list[tuple[_Span, bool]] = []
         self._drag_force, self._drag_torque = aligned_zeros((self._slots,)), aligned_zeros((self._slots,))
         self._joints: list[tuple] = []
+        self._sides: list[tuple] = []
         self._number = {id(rod): number for number, rod in enumerate(rods)}
         self._rods = list(rods)
         self._rod_contacts: set[tuple[int, int, float, float]] = set()
@@ -202,6 +204,17 @@ class SceneBuilder:
             turn_stiffness, turn_damping, np.eye(3) if rest_rotation is None else rest_rotation,
         ))  # fmt: skip
 
+    def add_side(
+        self, ends: tuple[Any, int, Any, int], *, stiffness: float, damping: float, repulsion: float,
+        towards: ArrayLike, offset: float,
+    ) -> None:  # fmt: skip
+        """Join two elements side by side; `Sides` says what the arguments mean."""
+        one, i, two, j = ends
+        _require_rod(one)
+        _require_rod(two)
+        self._sides.append(((self.element(one, i), self.element(two, j)), stiffness, damping, repulsion, towards,
+                            offset))  # fmt: skip
+
     def add_pin(
         self, system: Any, index: int, *, position: Array, axes: Sequence[bool] = (True, True, True),
         start_time: float = ALWAYS, velocity: ArrayLike = (0.0, 0.0, 0.0),
@@ -266,7 +279,7 @@ class SceneBuilder:
     @property
     def loading(self) -> int:
         """Where anything acts from outside, but planes: UNLOADED, SPARSE or DENSE."""
-        rows = (self._waves, self._flows, self._tensions, self._rod_contacts, self._body_contacts)
+        rows = (self._waves, self._flows, self._tensions, self._sides, self._rod_contacts, self._body_contacts)
         if any(map(len, rows)) or self._dead_force.any() or self._dead_torque.any():
             return DENSE
         is_loaded = self._point_loads or self._joints or self._body_force.any() or self._body_torque.any()
@@ -296,6 +309,7 @@ class SceneBuilder:
                               np.array([is_closed for _, is_closed in self._tensions], dtype=np.bool_)),
             drag=Drag(bool(self._drag_force.any() or self._drag_torque.any()), self._drag_force, self._drag_torque),
             joints=_table(Joints, self._joints, "i2", "i2", "", "", "", "3", "", "", "33"),
+            sides=_table(Sides, self._sides, "i2", "", "", "", "23", ""),
             rod_contacts=self._rod_contact_table(),
             body_contacts=_table(BodyContacts, self._body_contacts, "i2", "i", "", "", "", ""),
             planes=plane_table([plane for plane, _ in self._planes]),

@@ -102,6 +102,23 @@ class Joints(NamedTuple):
     """C with Q1 = C Q2 at rest, (C, 3, 3)"""
 
 
+class Sides(NamedTuple):
+    """The S pairs of elements of rods side by side that are joined at their surfaces."""
+
+    element: Index
+    """Slots of the two elements, (S, 2) int64"""
+    stiffness: Array
+    """Force per distance of the two points k [N/m], (S,)"""
+    damping: Array
+    """Force per relative velocity of the elements nu [N s/m], (S,)"""
+    repulsion: Array
+    """Force per overlap to the power of 3/2 [N/m^(3/2)], (S,)"""
+    towards: Array
+    """Unit vectors from the axis of each element to its point, material frame, (S, 2, 3)"""
+    offset: Array
+    """How far the surfaces are apart at rest [m], (S,)"""
+
+
 class Law(NamedTuple):
     """How two things press and rub on each other where they overlap."""
 
@@ -255,6 +272,7 @@ class Scene(NamedTuple):
     tensions: Tensions
     drag: Drag
     joints: Joints
+    sides: Sides
     rod_contacts: RodContacts
     body_contacts: BodyContacts
     planes: Planes

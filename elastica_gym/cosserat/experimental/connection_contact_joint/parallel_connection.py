@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...joint import ConnectionBase
+from ...joint import ConnectionBase, End
+from ...lowering import SceneBuilder
 from ...model import Array
 
 
@@ -52,61 +53,38 @@ class SurfaceJointSideBySide(ConnectionBase):
         How far the surfaces are apart at rest [m]; half of it grows with the radius of each rod.
     """
 
+    IS_COMPILED = True
+
     def __init__(
         self, k: ArrayLike, nu: ArrayLike, k_repulsive: ArrayLike, rod_one_direction_vec_in_material_frame: ArrayLike,
         rod_two_direction_vec_in_material_frame: ArrayLike, offset_btw_rods: ArrayLike, **kwargs: Any,
     ) -> None:  # fmt: skip
-        self.k, self.nu, self.k_repulsive = (np.array(each, dtype=np.float64) for each in (k, nu, k_repulsive))
-        self.offset_btw_rods = np.array(offset_btw_rods, dtype=np.float64)
-        self.rod_one_direction_vec_in_material_frame = _columns(rod_one_direction_vec_in_material_frame)
-        self.rod_two_direction_vec_in_material_frame = _columns(rod_two_direction_vec_in_material_frame)
-        self.spring_force = self.rod_one_rd2 = self.rod_two_rd2 = np.zeros((3, 1))
+        towards = [np.array(each, dtype=np.float64).reshape(3, -1)
+                   for each in (rod_one_direction_vec_in_material_frame, rod_two_direction_vec_in_material_frame)]
+        self.towards = np.stack(towards).transpose(2, 0, 1)
+        self.laws = [np.broadcast_to(np.ravel(np.asarray(each, dtype=np.float64)), len(self.towards))
+                     for each in (k, nu, k_repulsive, offset_btw_rods)]  # fmt: skip
+        self.n_lowered = 0
 
     def apply_forces(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
     ) -> None:
-        """Pull the points together, damp, and part what overlaps; half of each force to each node."""
-        i, j = np.atleast_1d(index_one), np.atleast_1d(index_two)
-        radius_one, self.rod_one_rd2 = self._arm(system_one, i, self.rod_one_direction_vec_in_material_frame)
-        radius_two, self.rod_two_rd2 = self._arm(system_two, j, self.rod_two_direction_vec_in_material_frame)
-        between = _middles(system_two)[:, j] - _middles(system_one)[:, i]
-        # rounded, as the original does, so that rods at rest stay at rest
-        self.spring_force = self.k * np.round(between + self.rod_two_rd2 - self.rod_one_rd2, 12)
-        distance = np.linalg.norm(between, axis=0)
-        overlap = np.maximum(-np.round(distance - radius_one - radius_two, 12), 0.0)
-        rate = _middle_velocities(system_two)[:, j] - _middle_velocities(system_one)[:, i]
-        force = self.spring_force + self.nu * rate - self.k_repulsive * overlap**1.5 * between / distance
-        for system, index, sign in ((system_one, i, 0.5), (system_two, j, -0.5)):
-            for node in (index, index + 1):
-                np.add.at(system.external_forces, (slice(None), node), sign * force)
+        """Refuse: there is no other implementation than the compiled one."""
+        raise NotImplementedError("SurfaceJointSideBySide acts inside the compiled step; a subclass cannot call it")
 
     def apply_torques(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
     ) -> None:
-        """Add the torques of the springs about the elements' centres."""
-        for system, index, arm, sign in ((system_one, index_one, self.rod_one_rd2, 1.0),
-                                         (system_two, index_two, self.rod_two_rd2, -1.0)):  # fmt: skip
-            i = np.atleast_1d(index)
-            torque = np.cross(arm, sign * self.spring_force, axis=0)
-            torque = np.einsum("ijk,jk->ik", system.director_collection[..., i], torque)
-            np.add.at(system.external_torques, (slice(None), i), torque)
+        """Do nothing: the compiled step adds torques with the forces."""
 
-    def _arm(self, system: Any, index: Array, direction: Array) -> tuple[Array, Array]:
-        """Return how far each rod reaches [m], (m,), and the way from its axis to there in the lab [m], (3, m)."""
-        reach = system.radius[index] + 0.5 * self.offset_btw_rods / np.sqrt(system.dilatation[index])
-        return reach, reach * np.einsum("jik,jk->ik", system.director_collection[..., index], direction)
+    def lower(self, builder: SceneBuilder, ends: End) -> None:
+        """Write the next pair."""
+        k, nu, repulsion, offset = (float(each[self.n_lowered]) for each in self.laws)
+        builder.add_side(ends, stiffness=k, damping=nu, repulsion=repulsion, towards=self.towards[self.n_lowered],
+                         offset=offset)  # fmt: skip
+        self.n_lowered += 1
 
 
 def _middles(rod: Any) -> Array:
     """Return the centres of elements [m], (3, n)."""
     return 0.5 * (rod.position_collection[:, 1:] + rod.position_collection[:, :-1])
-
-
-def _middle_velocities(rod: Any) -> Array:
-    """Return the velocities of the centres of elements [m/s], (3, n)."""
-    return 0.5 * (rod.velocity_collection[:, 1:] + rod.velocity_collection[:, :-1])
-
-
-def _columns(vectors: ArrayLike) -> Array:
-    values = np.array(vectors, dtype=np.float64)
-    return values[:, None] if values.ndim == 1 else values
