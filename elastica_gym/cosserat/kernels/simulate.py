@@ -8,7 +8,7 @@ from math import cos, exp, sin
 import numpy as np
 
 from ..model import BLOCK
-from .bodies import drift_bodies, orthonormalise_bodies
+from .bodies import orthonormalise_bodies
 from .compiler import FIRST, ONE, apart, entry, inner
 from .constraints import hold, move
 from .damping import decay, decay_bodies, dilating_decay, drag, smooth, smooth_ring
@@ -16,12 +16,12 @@ from .ends import add_to
 from .flow import resist
 from .hooks import call
 from .joints import join
-from .kinematics import kinematics, kinematics_twice, orthonormalise
+from .kinematics import orthonormalise
 from .loads import clear, clear_at, dead_force, dead_torque, external, external_at, viscosity, wave
 from .pairs import ground_bodies, touch_bodies, touch_rods
 from .rings import follow, hand_back
 from .sides import join_sides
-from .step import ORTHONORMALISE_EVERY, internal, kick, matrix, rows, settle
+from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows, settle
 from .tension import reciprocate
 from .vectors import add, plus, times, to_material, vector
 
@@ -90,7 +90,8 @@ def external_loads(model, scene, state, control, hooks, n):
     force, torque = control.force[0], control.torque[0]
     if scene.point_loads.slot.size > 0:
         point_forces(scene.point_loads, time, force, state.body_force[0])
-    dead_loads_on_bodies(loads, state.body_Q[0], state.body_force[0], state.body_torque[0])
+    if model.cylinders.mass.size > 0:
+        dead_loads_on_bodies(loads, state.body_Q[0], state.body_force[0], state.body_torque[0])
     if loads.has_force:
         dead_force(FIRST, n, rows(loads.force), rows(force))
     if loads.has_torque:
@@ -193,18 +194,6 @@ def damp(model, scene, state, hooks, n, dt):
 
 
 @inner
-def shift(model, state, n, h, twice):
-    """Move everything by a time h at its present velocities, or twice that."""
-    if twice:
-        kinematics_twice(FIRST, n, h, rows(state.x[0]), rows(state.v[0]), matrix(state.Q[0]), rows(state.w[0]))
-    else:
-        kinematics(FIRST, n, h, rows(state.x[0]), rows(state.v[0]), matrix(state.Q[0]), rows(state.w[0]))
-    for _ in range(2 if twice else 1):
-        drift_bodies(h, state.body_x[0], state.body_v[0], state.body_Q[0], state.body_w[0])
-        state.time[0] += h
-
-
-@inner
 def prepare(scene, state, dt):
     """Compute the factors that do not change between steps."""
     for k in range(scene.decay.node_rate.size):
@@ -218,29 +207,24 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
     """Take steps of a symplectic scheme. Returns 0, or 1 if a hook asked to stop in the middle of a step.
 
     Unlike `advance`, it does not merge the last drift of a step with the first of the next: what comes
-    out does not depend on where a run is cut. It takes both in one pass, though, where nothing looks on in
-    between: what is prescribed is set after the second, too. External loads are cleared between stages, but neither
+    out does not depend on where a run is cut. External loads are cleared between stages, but neither
     before the first nor after the last, so that those set from outside act once, and callbacks see them.
     ``loading`` is one of UNLOADED, SPARSE (only where ``scene.touched`` says) and DENSE.
     """
     n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
     prepare(scene, state, dt)
     n_kicks = scheme.kicks.size
-    is_watched = hooks.values != 0 or scheme.drifts[0] != scheme.drifts[n_kicks]
-    is_ahead = False
     for step in range(n_steps):
         for stage in range(n_kicks + 1):
-            if stage > 0 or not is_ahead:
-                corrects = stage == n_kicks and (state.step[0] + 1) % ORTHONORMALISE_EVERY == 0
-                is_ahead = stage == n_kicks and step + 1 < n_steps and not (corrects or is_watched)
-                shift(model, state, n, scheme.drifts[stage] * dt, is_ahead)
-                if stage == n_kicks:
-                    state.step[0] += 1
-                if corrects:
+            drift(model, state, 0, n, scheme.drifts[stage] * dt)
+            state.time[0] += scheme.drifts[stage] * dt
+            if stage == n_kicks:
+                state.step[0] += 1
+                if state.step[0] % ORTHONORMALISE_EVERY == 0:
                     orthonormalise(FIRST, n, matrix(state.Q[0]))
                     orthonormalise_bodies(state.body_Q[0])
-                if constrain_values(scene, state, hooks) != 0:
-                    return 1
+            if constrain_values(scene, state, hooks) != 0:
+                return 1
             if stage == n_kicks:
                 break
             if scene.rings.first.size > 0:
