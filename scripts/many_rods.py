@@ -24,7 +24,8 @@ OVERLAP = 2e-4
 TILT = 0.05
 """Slope of the rods, up and down in turn: neighbours in a row and in a column cross [rad]"""
 DT = 1e-5
-N_STEPS, REPEATS = 40, 5
+N_STEPS, REPEATS = 200, 5
+"""Steps of a measurement, the same for all, since rods that touch part; and measurements, of which the best counts"""
 
 
 def rows(lib: Any, n_rods: int, contact: type | None = None) -> tuple[Any, list[Any]]:
