@@ -50,7 +50,7 @@ def widened(
 
 
 def statistics(known: Any, n: int, where: Sequence[int]) -> RunningMeanStd:
-    """Return statistics of n observations, some of which are known: mean 0 and variance 1 for the others.
+    """Return statistics of n observations, some of which are known: mean 0 and no variance yet for the others.
 
     Parameters
     ----------
@@ -64,6 +64,8 @@ def statistics(known: Any, n: int, where: Sequence[int]) -> RunningMeanStd:
     if len(where) == n:
         return known
     wide = RunningMeanStd(shape=(n,))
+    # a variance of one would hide what varies little, such as a commanded speed, for a long time
+    wide.var[:] = 0.0
     wide.mean[np.asarray(where)], wide.var[np.asarray(where)] = known.mean, known.var
     wide.count = min(known.count, KNOWN)
     return wide
