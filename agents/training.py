@@ -21,7 +21,7 @@ from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.utils import safe_mean
 from stable_baselines3.common.vec_env import VecNormalize
 
-from agents import curves
+from agents import curves, transfer
 from agents.checkpoints import checkpoint_folders, last_whole_checkpoint, write_atomically, write_checkpoint
 from agents.checks import BadInputError
 from agents.evaluate import evaluate, record
@@ -29,7 +29,7 @@ from agents.hyperparameters import algorithm_arguments, algorithm_class, normali
 from agents.policies import TrainedPolicy, load_model, load_normalization, load_run, use_one_thread
 from agents.progress import ProgressDisplay
 from agents.run_files import EVALUATIONS, METRICS, Table
-from agents.vec_env import BatchVecEnv, make_batch_vec_env
+from agents.vec_env import BatchVecEnv, make_batch_vec_env, observation_names
 
 SAC_STEPS_PER_ITERATION = 512
 """Environment steps that make an iteration of SAC, which updates its networks every few steps."""
@@ -131,19 +131,26 @@ class Training:
             raise BadInputError(f"Stable-Baselines3 refuses the hyperparameters: {error}") from error
 
     def _take_over(self, run: Path) -> None:
-        """Begin with the networks of another run and with its statistics of observations; explore as if new."""
+        """Begin with the networks of another run and with its statistics of observations; explore as if new.
+
+        What is seen here and was not there counts for nothing at first.
+        """
         other, config = load_run(run)
+        now = self.adapter.batch.observation_names
         weights = {name: value for name, value in other.model.policy.state_dict().items() if name != "log_std"}
         try:
+            where = transfer.places(observation_names(config["env"]), now)
+            shapes = {name: value.shape for name, value in self.model.policy.state_dict().items()}
+            weights = transfer.widened(weights, shapes, where)
             absent, unknown = self.model.policy.load_state_dict(weights, strict=False)
-        except RuntimeError as error:
+        except (RuntimeError, ValueError) as error:
             absent, unknown = [str(error)], []
         if set(absent) - {"log_std"} or unknown:
             raise BadInputError(f"The networks of {run}, {config['algo']} on {config['env']}, do not fit: "
                                 f"{', '.join([*absent, *unknown])}")  # fmt: skip
         normalize = self.model.get_vec_normalize_env()
         if normalize is not None and other.normalization is not None:
-            normalize.obs_rms = other.normalization.obs_rms
+            normalize.obs_rms = transfer.statistics(other.normalization.obs_rms, len(now), where)
 
     def _load_model(self, checkpoint: Path) -> Any:
         env: Any = self.adapter

@@ -24,10 +24,14 @@ class Mirror:
         The axis of the heading's frame that is across the mirror: forward or right.
     arms : tuple of str
         The two arms that it exchanges, counting the rod from the other end; empty where it exchanges none.
+    is_later : bool
+        Whether the image feels the clock half a period later. What undulates bends to one side and half a period later
+        to the other, so it is its own image in such a mirror only; in one without, what is straight must stay straight.
     """
 
     across: str
     arms: tuple[str, ...] = ()
+    is_later: bool = False
 
     def image(self, names: tuple[str, ...]) -> tuple[Index, Array]:
         """Return where the mirror image has each number, and with which sign.
@@ -61,6 +65,8 @@ class Mirror:
         parts = name.split("/")
         if "spin" in parts:
             return parts[-1] != self.across
+        if parts[0] == "clock":
+            return self.is_later
         if parts[0] == "roll":
             return parts[-1] == "binormal" and not self.arms
         about_normal = "normal" in parts and not self.arms

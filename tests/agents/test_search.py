@@ -8,15 +8,17 @@ import pytest
 import yaml
 
 from agents import cmaes, gaits, policies
+from agents.cards import load_pretrained
 from agents.checks import BadInputError
 from agents.evaluate import Evaluation, evaluate, run_episodes
 from agents.run_files import GAIT, SEARCH, read_table
 from agents.vec_env import make_batch_vec_env
 from elastica_gym.bodies import octopus, snake
-from tests.agents.commands import FORWARD, REACH, run
+from tests.agents.commands import FORWARD, REACH, ROOT, run
 from tests.agents.test_bad_input import refused
 
 PNG = b"\x89PNG"
+SEARCHED = ROOT / "agents" / "searched"
 
 
 def starts(gait: gaits.Gait) -> np.ndarray:
@@ -127,6 +129,20 @@ def test_the_command_searches_and_its_gait_is_evaluated(tmp_path):
     assert evaluated["distance_mean"] == pytest.approx(found["score"]["distance_mean"], abs=1e-12)
     assert 0.0 < evaluated["distance_mean"] < 1.0
     assert "has a search already" in refused("agents.search", "--folder", folder)
+
+
+@pytest.mark.parametrize("path", sorted(SEARCHED.glob("*.yml")), ids=lambda path: path.stem)
+def test_shipped_gaits_do_what_their_files_say(path):
+    policy, env_id = gaits.load_gait(path)
+    score = yaml.safe_load(path.read_text())["score"]
+    result = evaluate(policy, env_id, episodes=2, seed=3_000_000)
+    assert result.distances.mean() == pytest.approx(score["distance_mean"], rel=0.1)
+
+
+def test_the_shipped_snake_beats_the_shipped_gait():
+    found = yaml.safe_load((SEARCHED / "snake_forward_wave.yml").read_text())["score"]["distance_mean"]
+    learned = load_pretrained("snake_forward_ppo")[1]["score"]["distance_mean"]
+    assert learned > 1.2 * found > 0.5
 
 
 def test_what_cannot_be_searched(tmp_path):

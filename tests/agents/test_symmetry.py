@@ -8,9 +8,12 @@ from numpy.testing import assert_allclose
 
 import elastica_gym  # noqa: F401
 from agents.symmetry import SymmetricPolicy
+from elastica_gym.envs.batch import CLOCK_PERIOD
 from elastica_gym.muscles import activation_names
 
 IDS = ("elastica_gym/OctopusCrawl-v0", "elastica_gym/SnakeForward-v0")
+TRAINED = (*IDS, "elastica_gym/SnakeSteer-v0")
+"""What is trained with such a policy; the second snake has more to see"""
 
 
 def mirrored(envs, values, names=None):
@@ -57,14 +60,27 @@ def test_what_happens_in_the_mirror_is_the_mirror_image(env_id, seed):
     write_mirror_image(envs)
     action = np.random.default_rng(seed).uniform(-0.7, 0.7, 42)
     # rolls are felt at the end of an element, which may be its beginning in the mirror
+    # and the clock of the image may be half a period later than that of its environment
     names = envs.observation_names
-    chosen = [i for i, name in enumerate(names) if not (envs.body.mirror.arms and name.startswith("roll/"))]
+    left_out = ("roll/", "clock/") if envs.body.mirror.arms else ("clock/",)
+    chosen = [i for i, name in enumerate(names) if not name.startswith(left_out)]
     for _ in range(3):
         seen, *_ = envs.step(np.stack([action, mirrored(envs, action)]))
         assert_allclose(seen[1, chosen], mirrored(envs, seen[0], names)[chosen], rtol=0, atol=1e-5)
 
 
-@pytest.mark.parametrize("env_id", IDS)
+@pytest.mark.parametrize(("env_id", "delay"), list(zip(IDS, (0.0, 0.5), strict=True)))
+def test_the_image_of_what_undulates_feels_the_clock_half_a_period_later(env_id, delay):
+    envs = gymnasium.make_vec(env_id, num_envs=1).unwrapped
+    names = envs.observation_names
+    clock = [names.index("clock/sine"), names.index("clock/cosine")]
+    seen = [envs.reset(seed=0)[0], *(envs.step(np.zeros((1, 42)))[0] for _ in range(20))]
+    later = int(delay * CLOCK_PERIOD / envs.control_dt)
+    for now, then in zip(seen, seen[later:], strict=False):
+        assert_allclose(mirrored(envs, now, names)[:, clock], then[:, clock], atol=1e-6)
+
+
+@pytest.mark.parametrize("env_id", TRAINED)
 def test_twice_mirrored_is_as_before(env_id):
     envs = gymnasium.make_vec(env_id, num_envs=1).unwrapped
     names = envs.observation_names
@@ -73,7 +89,7 @@ def test_twice_mirrored_is_as_before(env_id):
     assert np.array_equal(mirrored(envs, mirrored(envs, values, names), names), values)
 
 
-@pytest.mark.parametrize("env_id", IDS)
+@pytest.mark.parametrize("env_id", TRAINED)
 def test_the_policy_answers_in_the_mirror_with_the_mirror_image(env_id):
     envs = gymnasium.make_vec(env_id, num_envs=5).unwrapped
     torch.manual_seed(0)

@@ -5,12 +5,15 @@ import pytest
 import torch
 import yaml
 from stable_baselines3 import PPO, SAC
+from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
 
-from agents import hyperparameters
+from agents import hyperparameters, transfer
 from agents.policies import load_run
-from agents.vec_env import make_batch_vec_env
+from agents.vec_env import make_batch_vec_env, observation_names
 from tests.agents.commands import FORWARD, REACH, SMALL, SMALL_EPISODES, SMALL_PPO, run
+
+CRAWL, STEER = "elastica_gym/OctopusCrawl-v0", "elastica_gym/SnakeSteer-v0"
 
 
 @pytest.fixture(scope="module")
@@ -80,9 +83,31 @@ def test_a_run_starts_from_the_networks_of_another(ppo_run, tmp_path):
     for name, value in theirs.model.policy.state_dict().items():
         assert torch.equal(value, weights[name]) == (name != "log_std"), name
     assert begun.normalization.obs_rms.count > theirs.normalization.obs_rms.count
-    output = run("agents.train", "--env", REACH, "--steps", 40, "--start-from", ppo_run, "--folder",
+    output = run("agents.train", "--env", CRAWL, "--steps", 40, "--start-from", ppo_run, "--folder",
                  tmp_path / "misfit", *SMALL_PPO, status=2)  # fmt: skip
-    assert "do not fit" in output and FORWARD in output
+    assert "do not fit" in output and FORWARD in output and "not seen here: " in output
+
+
+def test_what_a_run_sees_more_than_the_one_it_starts_from_counts_for_nothing_at_first(ppo_run, tmp_path):
+    run("agents.train", "--env", STEER, "--steps", 40, "--start-from", ppo_run, "--folder", tmp_path / "next",
+        *SMALL_PPO, "learning_rate=0.0")  # fmt: skip
+    begun, theirs = (load_run(folder)[0] for folder in (tmp_path / "next", ppo_run))
+    before, now = observation_names(FORWARD), observation_names(STEER)
+    new = [i for i, name in enumerate(now) if name not in before]
+    assert [now[i] for i in new] == ["goal/speed", "pace/forward", "pace/right"]
+    seen = np.random.default_rng(0).normal(size=(5, len(now))).astype(np.float32)
+    actions = theirs.model.predict(np.delete(seen, new, axis=1), deterministic=True)[0]
+    assert np.abs(actions).max() > 1e-3
+    np.testing.assert_allclose(begun.model.predict(seen, deterministic=True)[0], actions, atol=1e-6)
+
+
+def test_statistics_of_what_was_not_seen_before():
+    known = RunningMeanStd(shape=(2,))
+    known.mean[:], known.var[:], known.count = [1.0, 2.0], [3.0, 4.0], 1e6
+    wide = transfer.statistics(known, 3, transfer.places(["a", "c"], ["a", "b", "c"]))
+    assert wide.mean.tolist() == [1.0, 0.0, 2.0] and wide.var.tolist() == [3.0, 0.0, 4.0]
+    assert wide.count == transfer.KNOWN
+    assert transfer.statistics(known, 2, [0, 1]) is known
 
 
 def test_a_minute_is_a_budget(tmp_path):
