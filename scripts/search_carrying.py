@@ -1,7 +1,7 @@
 """Search how the scripted octopus carries its object home: ``python scripts/search_carrying.py``.
 
-Trials begin where the script has just grabbed its object. CMA-ES varies the gait with which it goes home from there,
-the last one of `elastica_gym.envs.octopus_script.CARRYING`, and what counts is how soon it is home, or how near it
+Trials begin where the script has just grabbed its object. CMA-ES varies the gait with which it hurries home
+from there, `elastica_gym.envs.octopus_script.HOMEWARD`, and what counts is how soon it is home, or how near it
 comes, with the object held and upright.
 """
 
@@ -20,7 +20,7 @@ from tqdm import tqdm
 import elastica_gym  # noqa: F401  registers the environments
 from agents.checks import make_folder, run_command
 from elastica_gym.envs.handling import now
-from elastica_gym.envs.octopus_script import CARRYING, HOME, Gait, carry, fetch, see
+from elastica_gym.envs.octopus_script import HOME, HOMEWARD, Gait, carry, fetch, see
 
 FETCH = "elastica_gym/OctopusFetch-v0"
 LONGEST = 5.5
@@ -29,7 +29,7 @@ LONGEST = 5.5
 
 @dataclasses.dataclass
 class Arguments:
-    """Search how the scripted octopus carries its object home, beginning with what it does now."""
+    """Search how the scripted octopus hurries home with its object, beginning with what it does now."""
 
     generations: int = 40
     """Generations of CMA-ES."""
@@ -102,7 +102,7 @@ def together(parts: list[Any]) -> Any:
 def gait_of(values: np.ndarray) -> Gait:
     """Return the gait with the numbers that the search varies: 27 of the table, the period, 9 of the steering."""
     table = tuple(map(tuple, values[:27].reshape(3, 9)))
-    return CARRYING[-1]._replace(table=table, period=float(np.clip(values[27], 0.15, 1.5)), steering=tuple(values[28:]))
+    return HOMEWARD._replace(table=table, period=float(np.clip(values[27], 0.15, 1.5)), steering=tuple(values[28:]))
 
 
 def numbers_of(gait: Gait) -> np.ndarray:
@@ -137,7 +137,7 @@ def actions_of(batch: Any, gaits: list[Gait]) -> np.ndarray:
     sight, time = see(batch.observations), batch.elapsed * batch.control_dt
     arm = np.where(sight.ahead >= 0.0, 1, 0)
     parts = np.split(np.arange(batch.num_envs), len(gaits))
-    return np.concatenate([carry(sight.home[part], time[part], arm[part], (*CARRYING[:-1], gait))
+    return np.concatenate([carry(sight.home[part], time[part], arm[part], np.ones(len(part), dtype=bool), gait)
                            for gait, part in zip(gaits, parts, strict=True)])  # fmt: skip
 
 
@@ -148,7 +148,7 @@ def main() -> None:
     begin = grabs(arguments)
     batch = make(arguments.population * arguments.trials, arguments)
     batch.reset(seed=arguments.seed)
-    rng, start = np.random.default_rng(arguments.seed), numbers_of(CARRYING[-1])
+    rng, start = np.random.default_rng(arguments.seed), numbers_of(HOMEWARD)
     # the period is a tenth of what the rest is
     spread = np.where(np.arange(len(start)) == 27, 0.05, 1.0)
     strategy = cma.CMAEvolutionStrategy(

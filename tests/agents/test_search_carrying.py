@@ -10,7 +10,7 @@ import pytest
 import yaml
 from gymnasium.vector import AutoresetMode
 
-from elastica_gym.envs.octopus_script import CARRYING, carry
+from elastica_gym.envs.octopus_script import HOMEWARD, carry
 from tests.agents.commands import ROOT, environment
 
 RETURN = "elastica_gym/OctopusReturn-v0"
@@ -29,7 +29,7 @@ def make(n: int):
 
 
 def test_numbers_of_a_gait_make_it_again(script):
-    gait = CARRYING[-1]
+    gait = HOMEWARD
     again = script.gait_of(script.numbers_of(gait))
     np.testing.assert_array_equal(script.numbers_of(again), script.numbers_of(gait))
     assert (again.course, again.width) == (gait.course, gait.width)
@@ -53,8 +53,9 @@ def test_the_first_arm_carries_in_the_mirror():
     """Ahead is behind for it, and each arm's activations are the other's."""
     way = np.array([[0.3, -0.4], [-0.1, -0.5], [0.2, 0.3]])
     time = np.array([0.1, 0.75, 1.3])
-    second = carry(way, time, np.ones(3, dtype=np.int64))
-    first = carry(way * [-1.0, 1.0], time, np.zeros(3, dtype=np.int64))
+    hurries = np.array([True, False, True])
+    second = carry(way, time, np.ones(3, dtype=np.int64), hurries)
+    first = carry(way * [-1.0, 1.0], time, np.zeros(3, dtype=np.int64), hurries)
     arms = second.reshape(3, 3, 2, 7)
     np.testing.assert_array_equal(first.reshape(3, 3, 2, 7), arms[:, :, ::-1])
     assert np.ptp(second[:, 7:14]) == 0.0 and (second[:, 7:14] == 1.0).all()
@@ -68,4 +69,4 @@ def test_a_short_search(tmp_path):
     assert done.returncode == 0 and f"wrote {out}" in done.stdout, done.stdout + done.stderr
     found = yaml.safe_load(out.read_text())
     assert np.shape(found["table"]) == (3, 9) and len(found["steering"]) == 9
-    assert found["period"] == pytest.approx(CARRYING[-1].period, abs=0.05)
+    assert found["period"] == pytest.approx(HOMEWARD.period, abs=0.05)
