@@ -38,6 +38,9 @@ class TrainArguments:
     """Another configuration file of the same format."""
     start_from: Path | None = None
     """Folder of a run of the same algorithm to begin with its networks, as of an easier task of the same animal."""
+    imitate: int = 0
+    """Environment steps in which the networks first learn to do as the task's scripted policy does; not counted in
+    `steps`."""
     threads: int = 2
     """Threads for the physics; results do not depend on them."""
     evaluations: int = 10
@@ -136,10 +139,13 @@ def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
 
 def _check(config: dict[str, Any]) -> None:
     choose("environment", config["env"], environment_ids())
-    lowest = {"steps": 1, "minutes": 0.0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1, "recordings": 0}
+    lowest = {"steps": 0, "minutes": 0.0, "imitate": 0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1,
+              "recordings": 0}  # fmt: skip
     for key, bound in lowest.items():
-        if config[key] is not None and config[key] < bound:
-            raise BadInputError(f"{key} must be at least {bound}, got {config[key]}")
+        if (value := config.get(key)) is not None and value < bound:
+            raise BadInputError(f"{key} must be at least {bound}, got {value}")
+    if config.get("imitate") and config["algo"] != "ppo":
+        raise BadInputError(f"imitate must be 0 for {config['algo']}, got {config['imitate']}: only ppo can imitate")
     for key, allowed in (("seed", TRAINING), ("evaluation_seed", VALIDATION)):
         if config[key] not in allowed:
             raise BadInputError(f"{key} must be from {allowed.start} to {allowed.stop - 1}, got {config[key]}")

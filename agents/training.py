@@ -26,6 +26,7 @@ from agents.checkpoints import checkpoint_folders, last_whole_checkpoint, write_
 from agents.checks import BadInputError
 from agents.evaluate import evaluate, record
 from agents.hyperparameters import algorithm_arguments, algorithm_class, normalize_arguments
+from agents.imitation import CRITIC_UPDATES, critic_alone, imitate
 from agents.policies import TrainedPolicy, load_model, load_normalization, load_run, use_one_thread
 from agents.progress import ProgressDisplay
 from agents.run_files import EVALUATIONS, METRICS, Table
@@ -62,7 +63,7 @@ class Budget:
 
     def fraction(self, steps_done: int, *, seconds_ahead: float = 0.0) -> float:
         """Return how much of the budget is spent, from 0 to 1, or would be in `seconds_ahead`."""
-        by_steps = 0.0 if self.steps is None else steps_done / self.steps
+        by_steps = 0.0 if self.steps is None else steps_done / self.steps if self.steps else 1.0
         by_time = 0.0 if self.minutes is None else (self.seconds + seconds_ahead) / (60.0 * self.minutes)
         return min(1.0, max(by_steps, by_time))
 
@@ -97,6 +98,7 @@ class Training:
         self.metrics = Table(folder / METRICS, size=saved["table_sizes"][0])
         self.evaluations = Table(folder / EVALUATIONS, size=saved["table_sizes"][1])
         self._points_passed = 0
+        self._critic_first = CRITIC_UPDATES * self.model.n_steps * self.adapter.num_envs if config.get("imitate") else 0
         self._seconds_before: float = saved["seconds"]
         self._checkpoint_at = 0.0
         self._stop = False
@@ -213,6 +215,8 @@ class Training:
         try:
             with ProgressDisplay() as self.display:
                 self._compile()
+                if self.config.get("imitate") and self.model.num_timesteps == 0:
+                    imitate(self.model, self.adapter, steps=self.config["imitate"], show=self.display.update)
                 self.budget = Budget(
                     steps=self.config["steps"], minutes=self.config["minutes"], seconds_before=self._seconds_before
                 )
@@ -240,7 +244,8 @@ class Training:
         self._evaluate_when_due()
         while self.budget.fraction(self.model.num_timesteps, seconds_ahead=duration) < 1.0 and not self._stop:
             started, steps_before = time.monotonic(), self.model.num_timesteps
-            iterate(self.model, callback, self.budget)
+            with critic_alone(self.model.policy, steps_before < self._critic_first):
+                iterate(self.model, callback, self.budget)
             duration = time.monotonic() - started
             self._measure((self.model.num_timesteps - steps_before) / duration)
             self._evaluate_when_due()

@@ -7,7 +7,7 @@ by where the goal is.
 
 import numpy as np
 
-from elastica_gym.envs.octopus_script import CRAWLED, act, see
+from elastica_gym.envs.octopus_script import act, see
 
 CONTROL_DT = 0.05
 """From one action to the next [s]"""
@@ -26,7 +26,7 @@ def policy(observation: np.ndarray) -> np.ndarray:
     steps += 1
     # of a body of 1 m
     furthest = max(furthest, float(np.linalg.norm(observation[HOME])))
-    told = time, has_grabbed(observation), furthest >= CRAWLED
+    told = time, has_grabbed(observation), furthest
     return act(see(observation[None]), *(np.array([each]) for each in told))[0]
 
 

@@ -52,10 +52,12 @@ def test_the_file_tells_by_the_goal_whether_it_holds_the_object(make):
     policy = FilePolicy(POLICY)
     policy.reset([0, 0])
     # nearer to home, it would carry the object away first
-    far = np.linalg.norm(observations[:, 208:210], axis=1) >= octopus_script.CRAWLED
+    away = np.linalg.norm(observations[:, 208:210], axis=1)
+    far = away >= octopus_script.CRAWLED
     assert far.any()
     sight = octopus_script.see(observations)
-    carrying = octopus_script.carry(sight.home, np.zeros(2), np.where(sight.ahead >= 0.0, 1, 0))
+    arm, hurries = np.where(sight.ahead >= 0.0, 1, 0), away >= octopus_script.FAR
+    carrying = octopus_script.carry(sight.home, np.zeros(2), arm, hurries)
     np.testing.assert_allclose(policy(observations, batch)[far], carrying[far], atol=1e-6)
 
 

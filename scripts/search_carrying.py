@@ -1,0 +1,173 @@
+"""Search how the scripted octopus carries its object home: ``python scripts/search_carrying.py``.
+
+Trials begin where the script has just grabbed its object. CMA-ES varies the gait with which it hurries home
+from there, `elastica_gym.envs.octopus_script.HOMEWARD`, and what counts is how soon it is home, or how near it
+comes, with the object held and upright.
+"""
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import cma
+import gymnasium
+import numpy as np
+import tyro
+import yaml
+from gymnasium.vector import AutoresetMode
+from tqdm import tqdm
+
+import elastica_gym  # noqa: F401  registers the environments
+from agents.checks import make_folder, run_command
+from elastica_gym.envs.handling import now
+from elastica_gym.envs.octopus_script import HOME, HOMEWARD, Gait, carry, fetch, see
+
+FETCH = "elastica_gym/OctopusFetch-v0"
+LONGEST = 5.5
+"""Duration of a trial [s]"""
+
+
+@dataclasses.dataclass
+class Arguments:
+    """Search how the scripted octopus hurries home with its object, beginning with what it does now."""
+
+    generations: int = 40
+    """Generations of CMA-ES."""
+    population: int = 16
+    """Gaits in each."""
+    trials: int = 3
+    """Trials of each gait; all gaits of a generation have the same."""
+    grabs: int = 64
+    """Octopuses that grab their object, of which trials are drawn."""
+    sigma: float = 0.2
+    """Standard deviation of the first generation."""
+    seed: int = 5000
+    """Seed of the first octopus, and of the search."""
+    threads: int = 2
+    """Threads for the physics."""
+    out: Path = Path("runs/carrying.yml")
+    """File for the gait."""
+
+
+def make(n: int, arguments: Arguments) -> Any:
+    """Make a batch of octopuses with objects anywhere."""
+    return gymnasium.make_vec(
+        FETCH, num_envs=n, autoreset_mode=AutoresetMode.DISABLED, spread="anywhere", n_threads=arguments.threads
+    ).unwrapped
+
+
+def grabs(arguments: Arguments) -> list[Any]:
+    """Return the states of octopuses that have just grabbed their object."""
+    batch, found = make(arguments.grabs, arguments), []
+    batch.reset(seed=arguments.seed)
+    goes_on = np.ones(batch.num_envs, dtype=bool)
+    for _ in tqdm(range(batch.max_episode_steps), desc="grabbing", unit="step"):
+        _, _, terminated, truncated, _ = batch.step(fetch(batch))
+        goes_on &= ~(terminated | truncated)
+        has_grabbed = goes_on & (now(batch.situation()).grabbed == 1.0)
+        if has_grabbed.any():
+            saved = batch.get_state()
+            found += [each_of(saved, i) for i in np.flatnonzero(has_grabbed)]
+        goes_on &= ~has_grabbed
+        if not goes_on.any():
+            break
+    return found
+
+
+PARTS = ("physics", "control", "episodes", "poses")
+"""What is kept of a state: all that each environment has for itself, but for generators"""
+
+
+def each_of(saved: dict[str, Any], i: int) -> Any:
+    """Return what environment i has of a batch's state, in the same nested form."""
+
+    def take(part: Any) -> Any:
+        if isinstance(part, dict):
+            return {name: take(value) for name, value in part.items()}
+        return [take(value) for value in part] if isinstance(part, (list, tuple)) else part[i]
+
+    return {name: take(saved[name]) for name in PARTS}
+
+
+def together(parts: list[Any]) -> Any:
+    """Return the state of a batch, from what `each_of` returns for its environments."""
+    first = parts[0]
+    if isinstance(first, dict):
+        return {name: together([part[name] for part in parts]) for name in first}
+    if isinstance(first, list):
+        return [together(list(values)) for values in zip(*parts, strict=True)]
+    return np.stack(parts)
+
+
+def gait_of(values: np.ndarray) -> Gait:
+    """Return the gait with the numbers that the search varies: 27 of the table, the period, 9 of the steering."""
+    table = tuple(map(tuple, values[:27].reshape(3, 9)))
+    return HOMEWARD._replace(table=table, period=float(np.clip(values[27], 0.15, 1.5)), steering=tuple(values[28:]))
+
+
+def numbers_of(gait: Gait) -> np.ndarray:
+    """Return these numbers of a gait."""
+    return np.concatenate([np.ravel(gait.table), [gait.period], gait.steering])
+
+
+def worth(batch: Any, gaits: list[Gait], begin: list[Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return what each gait is worth in each trial, and whether it comes home, (P, K) each."""
+    batch.set_state({**batch.get_state(), **together(begin * len(gaits))})
+    shape, last = (len(gaits), len(begin)), round(LONGEST / batch.control_dt)
+    values, goes_on = np.zeros(batch.num_envs), np.ones(batch.num_envs, dtype=bool)
+    comes_home = ~goes_on
+    # an episode that is nearly over, too, has the time of a trial
+    batch.elapsed[:] = np.minimum(batch.elapsed, batch.max_episode_steps - last)
+    for step in range(last):
+        observations, _, terminated, _, info = batch.step(actions_of(batch, gaits))
+        away = np.linalg.norm(observations[:, HOME].astype(np.float64), axis=1)
+        done = goes_on & info["is_success"]
+        failed = goes_on & ~done & (terminated | (now(batch.situation()).grabbed == 0.0))
+        values = np.where(goes_on, 0.1 - away, values)
+        values[done] = 0.3 + 0.2 * (1.0 - step / last)
+        values[failed] = -0.5 - away[failed] + 0.2 * step / last
+        comes_home, goes_on = comes_home | done, goes_on & ~done & ~failed
+        if not goes_on.any():
+            break
+    return values.reshape(shape), comes_home.reshape(shape)
+
+
+def actions_of(batch: Any, gaits: list[Gait]) -> np.ndarray:
+    """Return the actions of octopuses that carry their objects, an equal part of them with each gait."""
+    sight, time = see(batch.observations), batch.elapsed * batch.control_dt
+    arm = np.where(sight.ahead >= 0.0, 1, 0)
+    parts = np.split(np.arange(batch.num_envs), len(gaits))
+    return np.concatenate([carry(sight.home[part], time[part], arm[part], np.ones(len(part), dtype=bool), gait)
+                           for gait, part in zip(gaits, parts, strict=True)])  # fmt: skip
+
+
+def main() -> None:
+    """Run the command line."""
+    arguments = tyro.cli(Arguments, description=__doc__)
+    make_folder(arguments.out.parent)
+    begin = grabs(arguments)
+    batch = make(arguments.population * arguments.trials, arguments)
+    batch.reset(seed=arguments.seed)
+    rng, start = np.random.default_rng(arguments.seed), numbers_of(HOMEWARD)
+    # the period is a tenth of what the rest is
+    spread = np.where(np.arange(len(start)) == 27, 0.05, 1.0)
+    strategy = cma.CMAEvolutionStrategy(
+        start, arguments.sigma,
+        {"popsize": arguments.population, "CMA_stds": spread, "seed": 1 + arguments.seed, "verbose": -9},
+    )  # fmt: skip
+    progress = tqdm(range(arguments.generations), desc="searching", unit="generation")
+    for _ in progress:
+        candidates = strategy.ask()
+        trials = [begin[i] for i in rng.choice(len(begin), arguments.trials, replace=False)]
+        values, comes_home = worth(batch, [gait_of(np.array(each)) for each in candidates], trials)
+        strategy.tell(candidates, list(-values.mean(axis=1)))
+        progress.set_postfix({"home": f"{comes_home.mean():.0%}", "mean": f"{values.mean():.3f}"})
+    found = gait_of(np.array(strategy.result.xfavorite))
+    table = [np.round(row, 2).tolist() for row in found.table]
+    text = {"period": round(found.period, 3), "table": table, "steering": np.round(found.steering, 2).tolist()}
+    arguments.out.write_text(yaml.safe_dump(text, sort_keys=False))
+    print(f"wrote {arguments.out}: the middle of the last generation's distribution")
+
+
+if __name__ == "__main__":
+    run_command(main)

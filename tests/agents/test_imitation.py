@@ -1,0 +1,65 @@
+"""A network first learns to do what the scripted policy does, then from rewards."""
+
+import numpy as np
+import torch
+
+from agents.hyperparameters import algorithm_arguments, load
+from agents.imitation import CRITIC_UPDATES, critic_alone
+from agents.policies import load_run
+from agents.vec_env import make_batch_vec_env
+from tests.agents.commands import FORWARD, SMALL_PPO, run
+from tests.agents.test_bad_input import refused
+
+NO_STEP = "learning_rate=0.0"
+
+
+def difference_from_script(policy) -> float:
+    """Mean square difference of actions from those of the script, where the script goes."""
+    env = make_batch_vec_env(FORWARD, n_envs=2)
+    env.seed(50)
+    observations, differences = env.reset(), []
+    for _ in range(10):
+        scripted = np.clip(env.batch.task.scripted_policy(env.batch), -1.0, 1.0)
+        differences.append(np.mean((policy(observations, env.batch) - scripted) ** 2))
+        observations, *_ = env.step(scripted)
+    env.close()
+    return float(np.mean(differences))
+
+
+def test_imitation_comes_near_the_script(tmp_path):
+    for name, steps in (("not", 0), ("imitates", 320)):
+        run("agents.train", "--steps", 40, "--imitate", steps, "--folder", tmp_path / name, *SMALL_PPO, NO_STEP)
+    untaught, taught = (load_run(tmp_path / name)[0] for name in ("not", "imitates"))
+    assert difference_from_script(taught) < 0.25 * difference_from_script(untaught)
+    assert taught.normalization.obs_rms.count > 320
+
+
+def test_a_run_that_imitates_goes_on_as_if_not_interrupted(tmp_path):
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    begin = ("agents.train", "--imitate", 80)
+    last = 40 * (CRITIC_UPDATES + 2)
+    run(*begin, "--steps", last, "--folder", whole, *SMALL_PPO, "learning_rate=0.0006")
+    run(*begin, "--steps", 80, "--folder", parts, *SMALL_PPO, "learning_rate=0.0006")
+    run("agents.train", "--resume", parts, "--steps", last)
+    one, other = (load_run(folder)[0].model.policy.state_dict() for folder in (whole, parts))
+    for name, value in one.items():
+        assert torch.equal(value, other[name]), name
+
+
+def test_the_critic_learns_alone_at_first():
+    from stable_baselines3 import PPO
+
+    env = make_batch_vec_env(FORWARD, n_envs=2)
+    model = PPO(env=env, **algorithm_arguments(load("ppo", FORWARD) | {"n_steps": 20, "batch_size": 20}))
+    before = {name: value.clone() for name, value in model.policy.state_dict().items()}
+    for first in (True, False):
+        with critic_alone(model.policy, first):
+            model.learn(80)
+        changed = {name for name, value in model.policy.state_dict().items() if not torch.equal(value, before[name])}
+        assert {name for name in changed if "value_net" in name}
+        assert bool({name for name in changed if "value_net" not in name}) != first
+    env.close()
+
+
+def test_only_ppo_imitates():
+    assert "only ppo can imitate" in refused("agents.train", "--algo", "sac", "--imitate", "100")
