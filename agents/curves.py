@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
 
 from agents.run_files import EVALUATIONS, METRICS, read_table
 
@@ -60,6 +61,7 @@ def _panels(title: str) -> tuple[Figure, Any]:
     axes = figure.subplots(1, len(PANELS))
     for ax, label in zip(axes, PANELS.values(), strict=True):
         ax.set_xlabel("environment steps")
+        ax.xaxis.set_major_formatter(EngFormatter(sep=""))
         ax.set_title(label, fontsize=10)
         ax.grid(alpha=0.3)
     return figure, axes
