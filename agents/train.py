@@ -139,7 +139,7 @@ def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
 
 def _check(config: dict[str, Any]) -> None:
     choose("environment", config["env"], environment_ids())
-    lowest = {"steps": 0, "minutes": 0.0, "imitate": 0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1,
+    lowest = {"steps": 1, "minutes": 0.0, "imitate": 0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1,
               "recordings": 0}  # fmt: skip
     for key, bound in lowest.items():
         if (value := config.get(key)) is not None and value < bound:
