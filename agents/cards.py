@@ -118,6 +118,8 @@ def command_of(config: dict[str, Any]) -> str:
     if config.get("start_from") is not None:
         # the folder it was in is of no use elsewhere: the id and the name of that run are
         words += ["--start-from", str(Path("runs", *Path(config["start_from"]).parts[-2:]))]
+    if config.get("imitate"):
+        words += ["--imitate", str(config["imitate"])]
     changed = {key: value for key, value in values.items() if shipped.get(key) != value}
     if changed:
         flow = (yaml.safe_dump(value, default_flow_style=True, width=1000) for value in changed.values())

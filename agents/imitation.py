@@ -81,12 +81,14 @@ def _played(model: Any, observations: np.ndarray, scripted: np.ndarray) -> np.nd
 @contextmanager
 def critic_alone(policy: Any, first: bool) -> Iterator[None]:
     """Keep the actor as it is, if asked to: what it can do already would be lost to a critic that knows nothing yet."""
-    actor = [p for name, p in policy.named_parameters() if not name.startswith(CRITIC)]
+    actor = [p for name, p in policy.named_parameters() if not name.startswith(CRITIC)] if first else []
     for parameter in actor:
-        parameter.requires_grad_(not first)
-    yield
-    for parameter in actor:
-        parameter.requires_grad_(True)
+        parameter.requires_grad_(False)
+    try:
+        yield
+    finally:
+        for parameter in actor:
+            parameter.requires_grad_(True)
 
 
 def _normalized(model: Any, observations: np.ndarray) -> np.ndarray:

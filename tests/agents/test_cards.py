@@ -54,6 +54,7 @@ def test_the_commands_of_cards_set_what_the_run_had(trained):
     words = shlex.split(cards.command_of(config))
     overrides = hyperparameters.parse_overrides(words[words.index("--set") + 1 :])
     assert hyperparameters.load("ppo", FORWARD, overrides=overrides) == config["hyperparameters"]
+    assert "--imitate" not in words and "--imitate 80" in cards.command_of(config | {"imitate": 80})
 
 
 def test_a_folder_that_would_become_too_large_stays_as_it_was(trained, published, tmp_path, monkeypatch):
