@@ -21,7 +21,7 @@ from .loads import clear, clear_at, dead_force, dead_torque, external, external_
 from .pairs import ground_bodies, touch_bodies, touch_rods
 from .rings import follow, hand_back
 from .sides import join_sides
-from .step import ORTHONORMALISE_EVERY, drift, internal, kick, matrix, rows, settle
+from .step import ORTHONORMALISE_EVERY, drift, drift_twice, internal, kick, matrix, rows, settle
 from .tension import reciprocate
 from .vectors import add, plus, times, to_material, vector
 
@@ -206,26 +206,37 @@ def prepare(scene, state, dt):
 def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
     """Take steps of a symplectic scheme. Returns 0, or 1 if a hook asked to stop in the middle of a step.
 
-    Unlike `advance`, it does not merge the last drift of a step with the first of the next: what comes
-    out does not depend on where a run is cut. External loads are cleared between stages, but neither
-    before the first nor after the last, so that those set from outside act once, and callbacks see them.
-    ``loading`` is one of UNLOADED, SPARSE (only where ``scene.touched`` says) and DENSE.
+    Unlike `advance`, it does not merge the last drift of a step with the first of the next into one of twice the
+    time: what comes out does not depend, to the last bit, on where a run is cut. External loads are cleared between
+    stages, but neither before the first nor after the last, so that those set from outside act once, and callbacks
+    see them. ``loading`` is one of UNLOADED, SPARSE (only where ``scene.touched`` says) and DENSE.
     """
     n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
     prepare(scene, state, dt)
     n_kicks = scheme.kicks.size
+    # what is held is held where it was: unless somebody looks in, a step's last drift and the next one's first are one
+    is_paired = scheme.drifts[0] == scheme.drifts[n_kicks] and hooks.values == 0
+    is_ahead = False
     for step in range(n_steps):
         for stage in range(n_kicks + 1):
-            drift(model, state, 0, n, scheme.drifts[stage] * dt)
+            is_last = stage == n_kicks
+            is_due = is_last and (state.step[0] + 1) % ORTHONORMALISE_EVERY == 0
+            if is_last and is_paired and not is_due and step < n_steps - 1:
+                drift_twice(model, state, 0, n, scheme.drifts[stage] * dt)
+                is_ahead = True
+            elif is_ahead:
+                is_ahead = False
+            else:
+                drift(model, state, 0, n, scheme.drifts[stage] * dt)
             state.time[0] += scheme.drifts[stage] * dt
-            if stage == n_kicks:
+            if is_last:
                 state.step[0] += 1
-                if state.step[0] % ORTHONORMALISE_EVERY == 0:
-                    orthonormalise(FIRST, n, matrix(state.Q[0]))
-                    orthonormalise_bodies(state.body_Q[0])
-            if constrain_values(scene, state, hooks) != 0:
+            if is_due:
+                orthonormalise(FIRST, n, matrix(state.Q[0]))
+                orthonormalise_bodies(state.body_Q[0])
+            if not is_ahead and constrain_values(scene, state, hooks) != 0:
                 return 1
-            if stage == n_kicks:
+            if is_last:
                 break
             if scene.rings.first.size > 0:
                 follow(scene.rings, state.x[0], state.v[0], state.Q[0], state.w[0])

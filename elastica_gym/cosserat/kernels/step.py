@@ -10,7 +10,7 @@ from .compiler import FIRST, entry, inner
 from .curvature import bending, logarithm, relative_rotation
 from .cylinders import cylinders_on_planes, rods_on_cylinders
 from .dynamics import dynamics
-from .kinematics import kinematics, orthonormalise
+from .kinematics import kinematics, kinematics_twice, orthonormalise
 from .loads import balance, external, viscosity, wave
 from .plane import slide, slip, stick, to_nodes, touch
 from .queue import take
@@ -39,6 +39,15 @@ def drift(model, state, i, n, h):
     kinematics(FIRST, n, h, rows(state.x[i]), rows(state.v[i]), matrix(state.Q[i]), rows(state.w[i]))
     if model.cylinders.mass.size > 0:
         drift_bodies(h, state.body_x[i], state.body_v[i], state.body_Q[i], state.body_w[i])
+
+
+@inner
+def drift_twice(model, state, i, n, h):
+    """Move environment i by a time h, twice."""
+    kinematics_twice(FIRST, n, h, rows(state.x[i]), rows(state.v[i]), matrix(state.Q[i]), rows(state.w[i]))
+    if model.cylinders.mass.size > 0:
+        for _ in range(2):
+            drift_bodies(h, state.body_x[i], state.body_v[i], state.body_Q[i], state.body_w[i])
 
 
 @inner
