@@ -63,9 +63,9 @@ def main() -> None:
 def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "Evaluation") -> dict[str, Any]:
     """Return what the card says."""
     from agents.cards import command_of
-    from agents.run_files import METRICS, read_table
+    from agents.run_files import BEST, METRICS, read_table
 
-    seconds = read_table(run / METRICS).get("seconds", [0.0])
+    seconds = read_table((run.parent if run.name == BEST else run) / METRICS).get("seconds", [0.0])
     summary = result.summary()
     scores = ("episodes", "first_seed", "success_rate", "distance_mean", "distance_ci95", "return_mean", "return_ci95")
     return {

@@ -11,6 +11,8 @@ import numpy as np
 
 METRICS = "metrics.csv"
 EVALUATIONS = "evaluations.csv"
+BEST = "best"
+"""Folder in a run with the model that has evaluated best; to be used like a run"""
 SEARCH = "search.csv"
 GAIT = "gait.yml"
 """The best gait of a search"""

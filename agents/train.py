@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from agents.checks import BadInputError, choose, environment_ids, fail, make_folder, require_extra, run_command
+from agents.run_files import BEST
 from agents.seeds import TRAINING, VALIDATION
 
 VERSIONS = ("elastica-gym", "stable-baselines3", "torch", "numpy", "numba", "gymnasium")
@@ -92,6 +93,8 @@ def main() -> None:
         print(f"Saved. Continue with: {_resume_command(folder)}")
         raise SystemExit(130)
     print(f"Finished. Model, metrics.csv, learning_curve.png and recordings are in {folder}")
+    if (folder / BEST).exists():
+        print(f"The model that evaluated best on the way is in {folder / BEST}")
     print(f"Evaluate it with: python -m agents.evaluate --run {folder}")
 
 

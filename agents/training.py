@@ -29,7 +29,7 @@ from agents.hyperparameters import algorithm_arguments, algorithm_class, normali
 from agents.imitation import CRITIC_UPDATES, critic_alone, imitate
 from agents.policies import TrainedPolicy, load_model, load_normalization, load_run, use_one_thread
 from agents.progress import ProgressDisplay
-from agents.run_files import EVALUATIONS, METRICS, Table
+from agents.run_files import BEST, EVALUATIONS, METRICS, Table, read_table
 from agents.vec_env import BatchVecEnv, make_batch_vec_env, observation_names
 
 SAC_STEPS_PER_ITERATION = 512
@@ -323,6 +323,8 @@ class Training:
             "divergences": result["divergences"],
             **{f"reward_{term}": mean for term, mean in result["terms"].items()},
         }
+        if result["return_mean"] > read_table(self.folder / EVALUATIONS).get("return", np.array([-np.inf])).max():
+            self._save_best()
         self.evaluations.append(row)
         self.display.say(
             f"evaluation at {steps:,} steps: return {row['return']:.3f} ± {row['return_ci95']:.3f}, "
@@ -337,23 +339,36 @@ class Training:
         self._checkpoint_at = self.budget.seconds
 
     def _finish(self) -> None:
-        """Save the state for a later ``--resume``, the model for use, the curve and a recording."""
+        """Save the state for a later ``--resume``, the model for use, the curve and recordings of the best model."""
         self._checkpoint()
-        write_atomically(self.folder / "model.zip", self.model.save)
-        normalize = self.model.get_vec_normalize_env()
-        if normalize is not None:
-            write_atomically(self.folder / "vecnormalize.pkl", normalize.save)
+        self._save_policy(self.folder)
         figure = curves.plot_run(self.folder)
         write_atomically(self.folder / "learning_curve.png", lambda path: curves.save(figure, path))
         if not self._stop:
             self._record()
 
+    def _save_best(self) -> None:
+        """Keep the policy as it is now in a folder that can be used like a run."""
+        folder = self.folder / BEST
+        folder.mkdir(exist_ok=True)
+        self._save_policy(folder)
+        config = (self.folder / "config.yml").read_bytes()
+        write_atomically(folder / "config.yml", lambda path: path.write_bytes(config))
+
+    def _save_policy(self, folder: Path) -> None:
+        write_atomically(folder / "model.zip", self.model.save)
+        normalize = self.model.get_vec_normalize_env()
+        if normalize is not None:
+            write_atomically(folder / "vecnormalize.pkl", normalize.save)
+
     def _record(self) -> None:
         folder = self.folder / "recordings"
         folder.mkdir(exist_ok=True)
         seed, env_kwargs = self.config["evaluation_seed"], self.config["hyperparameters"].get("env_kwargs") or {}
+        best = self.folder / BEST
+        policy = load_run(best)[0] if best.exists() else self._policy()
         for i in range(self.config["recordings"]):
-            record(self._policy(), self.config["env"], seed=seed + i, folder=folder, env_kwargs=env_kwargs)
+            record(policy, self.config["env"], seed=seed + i, folder=folder, env_kwargs=env_kwargs)
 
     @property
     def last_checkpoint(self) -> Path | None:

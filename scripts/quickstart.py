@@ -38,7 +38,7 @@ def main() -> None:
     console.print(f"A snake of 50 elements learns to crawl: PPO for {arguments.minutes:g} minutes. "
                   "Ctrl-C saves and says how to go on.", highlight=False)  # fmt: skip
     command = [sys.executable, "-m", "agents.train", "--env", ENV, "--algo", "ppo", "--seed", str(arguments.seed),
-               "--minutes", str(arguments.minutes), "--evaluations", "5", "--folder", str(folder)]  # fmt: skip
+               "--minutes", str(arguments.minutes), "--evaluations", "8", "--folder", str(folder)]  # fmt: skip
     status = subprocess.run(command, cwd=ROOT).returncode
     if status != 0:
         sys.exit(status)
@@ -47,11 +47,12 @@ def main() -> None:
 
 
 def compare(console: Console, folder: Path, arguments: Arguments) -> None:
-    """Print a table of the trained policy and the baselines on the same unseen seeds."""
+    """Print a table of the policy that evaluated best in training and the baselines, on the same unseen seeds."""
     from agents.evaluate import confidence, evaluate
     from agents.policies import baseline, load_run
+    from agents.run_files import BEST
 
-    policies = {"trained": load_run(ROOT / folder)[0], "published gait": baseline("seed_gait"),
+    policies = {"trained": load_run(ROOT / folder / BEST)[0], "published gait": baseline("seed_gait"),
                 "random": baseline("random"), "zero": baseline("zero")}  # fmt: skip
     table = Table(title=f"{ENV}, {arguments.episodes} unseen seeds")
     for column in ("policy", "distance in 10 s (m)", "95 % interval", "return"):

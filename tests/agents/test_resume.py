@@ -82,6 +82,9 @@ def test_interrupted_killed_and_damaged_runs_end_bit_identical(tmp_path):
     output = run("agents.train", "--resume", disturbed)
     assert f"{newest} is damaged" in output
     assert_same_end(load_run(disturbed)[0], load_run(undisturbed)[0])
+    best = [load_run(folder / "best")[0].model for folder in (disturbed, undisturbed)]
+    assert_same(best[0].get_parameters(), best[1].get_parameters())
+    assert best[0].num_timesteps == best[1].num_timesteps
     for name in ("metrics.csv", "evaluations.csv"):
         assert table(disturbed / name) == table(undisturbed / name)
     assert len(table(disturbed / "metrics.csv")) == STEPS // 40

@@ -28,7 +28,7 @@ def ppo_run(tmp_path_factory):
 def test_a_run_leaves_what_it_should(ppo_run):
     names = {path.name for path in ppo_run.iterdir()}
     assert names == {"config.yml", "model.zip", "vecnormalize.pkl", "metrics.csv", "evaluations.csv",
-                     "learning_curve.png", "checkpoints", "recordings"}  # fmt: skip
+                     "learning_curve.png", "checkpoints", "recordings", "best"}  # fmt: skip
     config = yaml.safe_load((ppo_run / "config.yml").read_text())
     assert config["env"] == FORWARD and config["algo"] == "ppo" and config["seed"] == 0 and config["steps"] == 200
     assert config["hyperparameters"]["gamma"] == 0.9 and config["hyperparameters"]["n_envs"] == 2
@@ -47,6 +47,13 @@ def test_tables_of_a_run(ppo_run):
     assert terms == pytest.approx(float(last["return"]), abs=1e-4)
     evaluations = list(csv.DictReader((ppo_run / "evaluations.csv").open()))
     assert [int(row["steps"]) for row in evaluations] == [0, 200]
+
+
+def test_the_model_that_evaluated_best_is_kept(ppo_run):
+    evaluations = list(csv.DictReader((ppo_run / "evaluations.csv").open()))
+    best, config = load_run(ppo_run / "best")
+    assert best.model.num_timesteps == int(max(evaluations, key=lambda row: float(row["return"]))["steps"])
+    assert config == load_run(ppo_run)[1]
 
 
 def test_the_loop_does_what_stable_baselines3_does(ppo_run):
