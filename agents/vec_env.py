@@ -124,6 +124,10 @@ class BatchVecEnv(VecEnv):
             "episode": episode,
         }
 
+    def get_images(self) -> Sequence[np.ndarray | None]:
+        """Draw every environment, (height, width, 3) uint8 each, or None without a ``render_mode``."""
+        return self.batch.render() or [None] * self.num_envs
+
     def get_state(self) -> dict[str, Any]:
         """Everything that the next step depends on, picklable."""
         return {

@@ -5,6 +5,8 @@
     import elastica_gym, gymnasium
     env = gymnasium.make("elastica_gym/SnakeForward-v0")
     envs = gymnasium.make_vec("elastica_gym/SnakeForward-v0", num_envs=64)
+
+With ``render_mode="rgb_array"``, ``env.render()`` draws pictures.
 """
 
 from .envs import register_all

@@ -5,9 +5,10 @@ import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from copy import deepcopy
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from gymnasium import logger
 from gymnasium.spaces import Box
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -21,10 +22,16 @@ from ..cosserat.rod import require_positive, require_stable
 from ..muscles import N_ACTIVATIONS, activation_names
 from .task import Mask, Situation, Task
 
+if TYPE_CHECKING:
+    from ..viz import View
+    from ..viz.frames import Image
+
 CONTROL_DT = 0.05
 """Duration of a control step unless another is asked for [s]"""
 CLOCK_PERIOD = 1.0
 """Period of the clock that animals feel [s]"""
+RENDER_MODES = ("rgb_array",)
+"""Ways to draw, of which Gymnasium knows more"""
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
                   "body_x", "body_v", "body_Q", "body_w", "body_contact", "body_touch", "rod_touch")  # fmt: skip
@@ -62,6 +69,10 @@ class BatchEnv(VectorEnv):
         How the task draws its starts: one of ``task.starts``, by default the first.
     body_kwargs : dict, optional
         Passed to the function that makes the body, as ``n_elements`` of the snake.
+    render_mode : str, optional
+        ``"rgb_array"``, with which `render` draws pictures.
+    render_size : tuple of int
+        Their width and height [pixels].
 
     Raises
     ------
@@ -73,12 +84,15 @@ class BatchEnv(VectorEnv):
         self, task: Task, num_envs: int = 1, *, control_dt: float = CONTROL_DT, sim_dt: float | None = None,
         duration: float | None = None, n_threads: int | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP, weights: dict[str, float] | None = None,
-        spread: str | None = None, body_kwargs: dict[str, Any] | None = None, render_mode: None = None,
+        spread: str | None = None, body_kwargs: dict[str, Any] | None = None, render_mode: str | None = None,
+        render_size: tuple[int, int] = (640, 360),
     ) -> None:  # fmt: skip
         _require_count("num_envs", num_envs, 4096)
-        if render_mode is not None:
-            raise ValueError(f"render_mode must be None, not {render_mode!r}; record a rollout to look at it")
-        self.task, self.num_envs, self.render_mode = task, num_envs, render_mode
+        if render_mode not in (None, *RENDER_MODES):
+            raise ValueError(f"render_mode must be 'rgb_array' or None, not {render_mode!r}")
+        _require_size(render_size)
+        self.task, self.num_envs, self.render_mode, self.render_size = task, num_envs, render_mode, render_size
+        self._view: View | None = None
         try:
             self.body = task.make_body(**(body_kwargs or {}))
         except TypeError as error:
@@ -94,7 +108,8 @@ class BatchEnv(VectorEnv):
         self._set_times(control_dt, self.body.sim_dt if sim_dt is None else sim_dt,
                         task.duration if duration is None else duration)  # fmt: skip
         frames_per_second = round(1.0 / control_dt)
-        self.metadata = {"render_modes": [], "render_fps": frames_per_second, "autoreset_mode": self.autoreset_mode}
+        self.metadata = {"render_modes": list(RENDER_MODES), "render_fps": frames_per_second,
+                         "autoreset_mode": self.autoreset_mode}  # fmt: skip
         self._make_spaces()
         self._allocate()
 
@@ -218,8 +233,43 @@ class BatchEnv(VectorEnv):
             info |= {f"_{name}": ~begin for name in info}
         return self._observations.copy(), rewards, terminated, truncated, info
 
+    def render(self) -> "tuple[Image, ...] | None":
+        """Draw every environment as it is now; see `elastica_gym.viz.View`.
+
+        Returns
+        -------
+        tuple of Image, or None
+            For each environment (height, width, 3) uint8; nothing, but a warning, without a ``render_mode``.
+
+        Raises
+        ------
+        ImportError
+            If MuJoCo is not installed.
+        RuntimeError
+            If there was no reset, or MuJoCo finds nothing to draw with.
+        """
+        if self.render_mode is None:
+            logger.warn("render draws nothing where no render_mode was given: make the environment with "
+                        "render_mode='rgb_array'")  # fmt: skip
+            return None
+        if self._generators is None:
+            raise RuntimeError("call reset before render")
+        if self._view is None:
+            # what draws is imported by those who draw
+            from ..viz import View
+
+            self._view = View(self)
+        return self._view.draw()
+
     def close_extras(self, **kwargs: Any) -> None:
-        """Nothing is held open: threads belong to the process."""
+        """Close what draws; nothing else is held open, for threads belong to the process."""
+        if self._view is not None:
+            self._view.close()
+        self._view = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        # copies, here or in another process, make a view of their own
+        return {**self.__dict__, "_view": None}
 
     # one control step
 
@@ -451,6 +501,12 @@ def _available_cpus() -> int:
 def _require_count(name: str, value: int, most: int) -> None:
     if not isinstance(value, (int, np.integer)) or not 1 <= value <= most:
         raise ValueError(f"{name} must be a whole number from 1 to {most}, not {value!r}")
+
+
+def _require_size(size: tuple[int, int]) -> None:
+    counts = [n for n in size if isinstance(n, (int, np.integer)) and 1 <= n <= 2048] if np.iterable(size) else []
+    if len(counts) != 2 or len(size) != 2:
+        raise ValueError(f"render_size must be a width and a height from 1 to 2048, whole numbers, not {size!r}")
 
 
 def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:

@@ -1,14 +1,17 @@
 """One animal as a gymnasium.Env: a thin view of a batch of one."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from ..cosserat.model import Array
-from .batch import BatchEnv, Observations
+from .batch import RENDER_MODES, BatchEnv, Observations
 from .task import Task
+
+if TYPE_CHECKING:
+    from ..viz.frames import Image
 
 
 class SingleEnv(gymnasium.Env):
@@ -17,8 +20,8 @@ class SingleEnv(gymnasium.Env):
     Parameters
     ----------
     task : Task
-    render_mode : None
-        There is none; record a rollout to look at it.
+    render_mode : str, optional
+        ``"rgb_array"``, with which `render` draws a picture.
     **kwargs
         Arguments of `BatchEnv`.
 
@@ -28,9 +31,9 @@ class SingleEnv(gymnasium.Env):
         The batch of one.
     """
 
-    def __init__(self, task: Task, *, render_mode: None = None, **kwargs: Any) -> None:
+    def __init__(self, task: Task, *, render_mode: str | None = None, **kwargs: Any) -> None:
         self.batch = BatchEnv(task, 1, render_mode=render_mode, autoreset_mode=AutoresetMode.DISABLED, **kwargs)
-        self.metadata = {"render_modes": [], "render_fps": self.batch.metadata["render_fps"]}
+        self.metadata = {"render_modes": list(RENDER_MODES), "render_fps": self.batch.metadata["render_fps"]}
         self.observation_space = self.batch.single_observation_space
         self.action_space = self.batch.single_action_space
         self.render_mode = render_mode
@@ -53,6 +56,11 @@ class SingleEnv(gymnasium.Env):
         observations, rewards, terminated, truncated, info = self.batch.step(values[None])
         return (observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]),
                 {name: value.item(0) for name, value in info.items() if not name.startswith("_")})  # fmt: skip
+
+    def render(self) -> "Image | None":
+        """Draw the animal as it is now, (height, width, 3) uint8; see `BatchEnv.render`."""
+        frames = self.batch.render()
+        return None if frames is None else frames[0]
 
     def close(self) -> None:
         """Close the batch."""

@@ -7,8 +7,9 @@ Nothing here is imported by ``import elastica_gym``, and rerun and MuJoCo only w
 from .frames import Camera, Figure, Stage, framing, render_frames, write_video
 from .recording import read_positions, record_rollout, write_recording
 from .rollout import Policy, Recorder, Rollout, run_rollout
+from .view import View
 
 __all__ = [
-    "Camera", "Figure", "Policy", "Recorder", "Rollout", "Stage", "framing", "read_positions", "record_rollout",
+    "Camera", "Figure", "Policy", "Recorder", "Rollout", "Stage", "View", "framing", "read_positions", "record_rollout",
     "render_frames", "run_rollout", "write_recording", "write_video",
 ]  # fmt: skip

@@ -8,6 +8,7 @@ MuJoCo draws through EGL or OSMesa, which on Linux are packages of the system an
 import ctypes.util
 import os
 import sys
+import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -40,6 +41,12 @@ MARGIN = 1.25
 
 FIGURES = 12_000
 """Largest number of bodies, such as capsules, in one picture"""
+
+REACH = 0.6
+"""How far from its middle an animal may be expected to stretch, in body lengths"""
+
+FAR = 2.5
+"""How far from the animal's middle a camera that follows it has to see, in body lengths"""
 
 # the lab's (x, y, z) with y up are (y, z, x) in a world with z up, a rotation; lengths are body lengths
 # a lamp far away, since the shadows of a directional light leave a pattern on the ground
@@ -116,7 +123,8 @@ class Camera:
 class Stage:
     """Ground, light and a renderer, for any number of pictures of one size.
 
-    Use it in a ``with`` statement, or call `close`.
+    Use it in a ``with`` statement, or call `close`. It belongs to its process: the threads with which the system draws
+    do not come along with a fork, so that no process can draw that was forked from one that has drawn.
 
     Parameters
     ----------
@@ -130,13 +138,15 @@ class Stage:
     ImportError
         If MuJoCo is not installed.
     RuntimeError
-        If it finds nothing to draw with.
+        If it finds nothing to draw with, or this process was forked from one that has drawn.
     """
 
     def __init__(self, *, width: int = 960, height: int = 540, unit: float = 1.0) -> None:
+        global _drawing_process
         for name, value in (("width", width), ("height", height), ("unit", unit)):
             if not value > 0:
                 raise ValueError(f"{name} must be positive, not {value}")
+        _require_own_process()
         self._mujoco = _mujoco()
         large = {"width": SUPERSAMPLING * width, "height": SUPERSAMPLING * height}
         self._model = self._mujoco.MjModel.from_xml_string(SCENE.format(fov=FIELD_OF_VIEW, **large))
@@ -147,6 +157,8 @@ class Stage:
             self._renderer = self._mujoco.Renderer(self._model, max_geom=FIGURES, **large)
         except Exception as error:
             raise RuntimeError(_no_gl(str(error))) from error
+        _drawing_process = os.getpid()
+        _renderers.add(self._renderer)
 
     def __enter__(self) -> Self:
         return self
@@ -156,10 +168,12 @@ class Stage:
 
     def close(self) -> None:
         """Free what the renderer holds."""
-        self._renderer.close()
+        if _drawing_process == os.getpid():
+            self._renderer.close()
 
     def draw(self, figures: list[Figure], camera: Camera) -> Image:
         """Return a picture of bodies on the ground, (height, width, 3) uint8."""
+        _require_own_process()
         mujoco, scene = self._mujoco, self._renderer.scene
         view = mujoco.MjvCamera()
         view.type = mujoco.mjtCamera.mjCAMERA_FREE
@@ -315,8 +329,28 @@ def render_frames(rollout: Rollout, moments: Sequence[int] | None = None, *, has
 def outline(rollout: Rollout, moments: Sequence[int]) -> Array:
     """Return points (K, 3) that a picture of some moments of a rollout has to show [m]."""
     picked = list(moments)
-    seen = [rollout.nodes, *rollout.objects()] + ([] if rollout.target is None else [rollout.target[:, None]])
-    return np.concatenate([points[picked].reshape(-1, 3) for points in seen])
+    return np.concatenate([rollout.nodes[picked].reshape(-1, 3), *(_around(rollout, moment) for moment in picked)])
+
+
+def _around(rollout: Rollout, moment: int) -> Array:
+    """Return the ends of the objects and the target at one moment of a rollout [m], (K, 3)."""
+    begin, end = rollout.objects()
+    target = np.empty((0, 3)) if rollout.target is None else rollout.target[[moment]]
+    return np.concatenate([begin[moment], end[moment], target])
+
+
+def following(rollout: Rollout, moment: int, aspect: float) -> Camera:
+    """Return a camera that follows the animal, and has the objects and the target in view as long as they are near.
+
+    It has room for the animal in any posture, rather than for the one that it has: so it keeps its distance while the
+    animal moves its limbs, and as nothing that it shows jumps, neither does it.
+    """
+    middle = rollout.nodes[moment].mean(axis=0) * [1.0, 0.0, 1.0]
+    angles = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
+    room = np.stack([np.cos(angles), np.zeros(16), np.sin(angles)], axis=1)
+    away = (_around(rollout, moment) - middle) / rollout.body_length
+    away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True) / FAR, 1.0)
+    return framing(middle + rollout.body_length * np.concatenate([REACH * room, away]), aspect)
 
 
 def framing(points: Array, aspect: float, *, azimuth: float = 0.0, elevation: float = -50.0) -> Camera:
@@ -366,6 +400,27 @@ def write_video(frames: Image, path: str | Path, fps: float = 20.0) -> Path:
     if not path.is_file() or path.stat().st_size == 0:
         raise OSError(f"cannot write the video {path}")
     return path
+
+
+_drawing_process: int | None = None
+"""The one that has made the first renderer, this one or one that it was forked from"""
+
+_renderers: weakref.WeakSet[Any] = weakref.WeakSet()
+"""Those that are in use"""
+
+_inherited: list[Any] = []
+"""Renderers of the process that this one was forked from, kept since freeing them would wait for threads left behind"""
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=lambda: _inherited.extend(_renderers))
+
+
+def _require_own_process() -> None:
+    if _drawing_process not in (None, os.getpid()):
+        raise RuntimeError(
+            "this process was forked from one that has drawn, and cannot draw: start it by the method 'spawn', as "
+            "AsyncVectorEnv does with context='spawn'"
+        )
 
 
 def _mujoco() -> ModuleType:

@@ -1,5 +1,6 @@
 """Rollouts: what one environment did, step by step, as arrays."""
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
@@ -146,9 +147,11 @@ class Recorder:
         The environment, which may also be wrapped.
     index : int
         Which environment of the batch to follow.
+    keep : int, optional
+        How many of the last moments to keep; all if omitted.
     """
 
-    def __init__(self, env: Any, index: int = 0) -> None:
+    def __init__(self, env: Any, index: int = 0, *, keep: int | None = None) -> None:
         self.env: BatchEnv = _batch(env)
         if not 0 <= index < self.env.num_envs:
             raise ValueError(f"index must be from 0 to {self.env.num_envs - 1}, not {index}")
@@ -159,8 +162,8 @@ class Recorder:
         self._elements = np.concatenate([np.arange(s, s + n) for s, n in spans])
         self._head_node = self._nodes.tolist().index(self.env.body.senses.head)
         self._root_section = np.concatenate([rod.radius * np.sqrt(rod.rest_length) for rod in self.env.body.rods])
-        self._moments: list[dict[str, Array]] = []
-        self._rewards: list[dict[str, float]] = []
+        self._moments: deque[dict[str, Array]] = deque(maxlen=keep)
+        self._rewards: deque[dict[str, float]] = deque(maxlen=keep)
 
     def capture(self, infos: dict[str, Any] | None = None) -> Self:
         """Append the environment's present moment.

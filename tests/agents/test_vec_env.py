@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 from stable_baselines3.common.monitor import Monitor
-from stable_baselines3.common.vec_env import DummyVecEnv, VecMonitor, VecNormalize
+from stable_baselines3.common.vec_env import DummyVecEnv, VecMonitor, VecNormalize, VecVideoRecorder
 
 from agents.vec_env import BatchVecEnv, make_batch_vec_env
 from tests.agents.commands import FORWARD, REACH
@@ -117,3 +117,17 @@ def test_attributes_are_the_batch_s(env):
     assert env.env_is_wrapped(VecMonitor) == [False] * 3
     with pytest.raises(ValueError, match="share 'control_dt'"):
         env.set_attr("control_dt", 0.1, indices=[0])
+
+
+def test_video_recorder_takes_it(offscreen, tmp_path):
+    pytest.importorskip("moviepy")
+    native = make_batch_vec_env(FORWARD, n_envs=2, duration=DURATION, render_mode="rgb_array", render_size=(96, 64))
+    env = VecVideoRecorder(native, str(tmp_path), record_video_trigger=lambda step: step == 0, video_length=2)
+    env.reset()
+    # side by side or one upon the other
+    assert env.render().shape[0] * env.render().shape[1] == 2 * 64 * 96
+    for action in actions(3, 2):
+        env.step(action)
+    env.close()
+    (video,) = tmp_path.glob("*.mp4")
+    assert video.stat().st_size > 500

@@ -3,6 +3,7 @@
 import itertools
 import multiprocessing
 import pickle
+import warnings
 
 import gymnasium
 import numpy as np
@@ -30,9 +31,11 @@ def assert_same(first, second):
         np.testing.assert_array_equal(a, b)
 
 
-def test_gymnasium_checker_accepts_it(env_id):
-    env = gymnasium.make(env_id, duration=SHORT)
-    check_env(env.unwrapped)
+def test_gymnasium_checker_accepts_it(env_id, cannot_draw):
+    env = gymnasium.make(env_id, duration=SHORT, render_size=(64, 48))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(env.unwrapped, skip_render_check=bool(cannot_draw))
     env.close()
 
 
@@ -251,7 +254,9 @@ def test_step_before_reset_says_so(env_id, make_vec):
         ({"weights": {"effort": float("nan")}}, "must be a finite number, not nan"),
         ({"body_kwargs": {"legs": 4}}, "body_kwargs: .* unexpected keyword argument 'legs'"),
         ({"spread": "nowhere"}, "spread must be one of .*, not 'nowhere'"),
-        ({"render_mode": "human"}, "render_mode"),
+        ({"render_mode": "human"}, "render_mode must be 'rgb_array' or None, not 'human'"),
+        ({"render_size": (640, 0)}, r"render_size must be a width and a height from 1 to 2048, .*, not \(640, 0\)"),
+        ({"render_size": 640}, "render_size must be a width and a height from 1 to 2048, .*, not 640"),
     ],
 )
 def test_arguments_that_cannot_be_are_refused_at_construction(env_id, kwargs, message):

@@ -1,0 +1,44 @@
+"""Environments as they are now, in pictures: what their ``render`` returns."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .frames import Camera, Image, Stage, figures, following, outline
+from .rollout import Recorder
+
+if TYPE_CHECKING:
+    from ..envs import BatchEnv
+
+
+class View:
+    """Draws the environments of a batch as they are now, each seen by a camera that follows its animal.
+
+    One whose numbers are not finite, as a simulation that diverged may leave behind, is drawn as it was drawn last, or
+    if it never was, as bare ground. Nothing of the batch is changed.
+
+    Parameters
+    ----------
+    env : BatchEnv
+        Pictures have its ``render_size``.
+    """
+
+    def __init__(self, env: "BatchEnv") -> None:
+        width, height = env.render_size
+        self._aspect = width / height
+        self._stage = Stage(width=width, height=height, unit=env.body.senses.length)
+        self._recorders = [Recorder(env, i, keep=1) for i in range(env.num_envs)]
+
+    def draw(self) -> tuple[Image, ...]:
+        """Return a picture of each environment, (height, width, 3) uint8."""
+        return tuple(self._draw(recorder) for recorder in self._recorders)
+
+    def _draw(self, recorder: Recorder) -> Image:
+        rollout = recorder.capture().rollout()
+        if not np.isfinite(outline(rollout, [0])).all():
+            return self._stage.draw([], Camera(look_at=np.zeros(3), distance=4.0 * rollout.body_length))
+        return self._stage.draw(figures(rollout, 0), following(rollout, 0, self._aspect))
+
+    def close(self) -> None:
+        """Free what the renderer holds."""
+        self._stage.close()

@@ -1,0 +1,25 @@
+import importlib.util
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def cannot_draw() -> str:
+    """Why MuJoCo cannot draw here, or an empty text."""
+    # without importing it first: how MuJoCo draws is chosen at its import
+    if importlib.util.find_spec("mujoco") is None:
+        return "mujoco is not installed"
+    from elastica_gym.viz import Stage
+
+    try:
+        with Stage(width=16, height=16):
+            return ""
+    except RuntimeError as error:
+        return str(error)
+
+
+@pytest.fixture(scope="session")
+def offscreen(cannot_draw):
+    """Skip where MuJoCo cannot draw."""
+    if cannot_draw:
+        pytest.skip(cannot_draw)
