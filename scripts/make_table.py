@@ -188,7 +188,7 @@ def as_markdown(found: dict[tuple[str, str], list[dict[str, Any]]], settings: di
     """Return the table."""
     lines = [
         f"Interquartile means over {settings['episodes']} unseen episodes of each seed, with bootstrapped 95 % "
-        f"intervals; {settings['minutes']:g} minutes of training or search each, {settings['threads']} threads.",
+        f"intervals; {settings['minutes']:g} min of training or search each, threads: {settings['threads']}.",
         "",
         "| environment | policy | return | distance [m] | success | wall time [min] |",
         "|---|---|---|---|---|---|",
