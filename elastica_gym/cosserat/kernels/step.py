@@ -156,14 +156,15 @@ def kick(model, state, i, n, dt):
 
 
 @entry
-def advance_queue(model, state, control, queue, last, dt, n_substeps):
-    """Advance the environments from ``queue[0]`` to last - 1, as `advance` does, together with other threads.
+def advance_queue(model, state, control, order, queue, dt, n_substeps):
+    """Advance the environments that ``order`` lists from place ``queue[0]`` on, as `advance` does, among threads.
 
     Who is done with an environment takes the next one: CPUs of a shared machine are not equally fast.
     """
     n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
-    i: int = take(queue)  # type: ignore[call-arg] # the context is Numba's to give
-    while i < last:
+    place: int = take(queue)  # type: ignore[call-arg] # the context is Numba's to give
+    while place < order.size:
+        i = order[place]
         for k in range(model.mass.size):
             state.decay[i, k] = exp(-model.damping_rate[k] * dt)
         start = state.time[i]
@@ -182,7 +183,7 @@ def advance_queue(model, state, control, queue, last, dt, n_substeps):
         # once a call: what neighbours write shares a cache line with what other threads read
         state.step[i] += n_substeps
         state.time[i] = start + n_substeps * dt
-        i = take(queue)
+        place = take(queue)
 
 
 def advance(model: Model, state: State, control: Control, first: int, last: int, dt: float, n_substeps: int) -> None:
@@ -190,4 +191,4 @@ def advance(model: Model, state: State, control: Control, first: int, last: int,
 
     The half drifts of consecutive steps are one, within a call.
     """
-    advance_queue(model, state, control, np.array([first]), last, dt, n_substeps)
+    advance_queue(model, state, control, np.arange(first, last), np.zeros(1, dtype=np.int64), dt, n_substeps)
