@@ -3,7 +3,6 @@
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import gymnasium
@@ -14,7 +13,7 @@ import elastica_gym  # noqa: F401  registers the environments
 from agents.scoring import Samples, goals_held
 from elastica_gym.bodies import grip
 from elastica_gym.bodies.body import activate
-from elastica_gym.cosserat import State, advance
+from elastica_gym.cosserat import State, advance_together
 from elastica_gym.cosserat.model import make_control, make_state
 
 SAMPLE_TIME = 0.01
@@ -47,15 +46,10 @@ class Sampler:
         cuts = [batch.n_substeps * part // n_parts for part in range(n_parts + 1)]
         # the end of the control step is the batch's own
         self._parts = [end - begin for begin, end in itertools.pairwise(cuts)][:-1]
-        self._pool = ThreadPoolExecutor(batch.n_threads)
         self.is_over = np.zeros(n, dtype=bool)
         self._times: list[float] = []
         self._moments: list[tuple[np.ndarray, ...]] = []
         self._look(batch.state, np.arange(n))
-
-    def close(self) -> None:
-        """End the threads."""
-        self._pool.shutdown()
 
     def before(self, actions: np.ndarray) -> None:
         """Take the samples within a control step, before the batch does it."""
@@ -66,7 +60,8 @@ class Sampler:
         levels = np.clip(np.asarray(actions, dtype=np.float64), -1.0, 1.0)
         activate(batch.body.couples, levels[going], self._control.couple[: going.size])
         for n_substeps in self._parts:
-            self._advance(going.size, n_substeps)
+            advance_together(batch.body.model, self._copy, self._control, going.size, batch.sim_dt, n_substeps,
+                             batch.n_threads)  # fmt: skip
             self._look(self._copy, going)
 
     def after(self) -> None:
@@ -81,15 +76,6 @@ class Sampler:
     def samples(self) -> Samples:
         """Return all that has been seen."""
         return Samples(np.array(self._times), *(np.array(series) for series in zip(*self._moments, strict=True)))
-
-    def _advance(self, n: int, n_substeps: int) -> None:
-        """Advance the first n copies, shared among threads."""
-        model, dt, n_threads = self._batch.body.model, self._batch.sim_dt, self._batch.n_threads
-        borders = [n * t // n_threads for t in range(n_threads + 1)]
-        jobs = [self._pool.submit(advance, model, self._copy, self._control, *span, dt, n_substeps)
-                for span in itertools.pairwise(borders)]  # fmt: skip
-        for job in jobs:
-            job.result()
 
     def _look(self, state: State, going: np.ndarray) -> None:
         """Sample the first states, which are those of the environments that go on."""
@@ -150,5 +136,4 @@ def run_trials(
                 break
         return sampler.samples()
     finally:
-        sampler.close()
         env.close()

@@ -64,7 +64,7 @@ from .joint import (
     SelfContact,
     SphericalJoint,
 )
-from .kernels.step import advance, advance_queue
+from .kernels.step import advance
 from .model import Control, Model, State, make_control, make_state
 from .modules import BaseSystemCollection, CallBacks, Connections, Constraints, Contact, Damping, Forcing
 from .restart import load_state, save_state
@@ -75,6 +75,7 @@ from .rod.knot_theory import KnotTheory, compute_link, compute_twist, compute_wr
 from .rod.rod_base import RodBase
 from .surface import Plane
 from .surroundings import Wave
+from .threads import advance_together
 from .timestepper import extend_stepper_interface, integrate
 from .timestepper.symplectic_steppers import PEFRL, PositionVerlet
 from .transformations import inv_skew_symmetrize, rotate
@@ -147,7 +148,7 @@ __all__ = [
     "UniformTorques",
     "Wave",
     "advance",
-    "advance_queue",
+    "advance_together",
     "at_rest",
     "build_model",
     "compute_link",

@@ -41,13 +41,12 @@ STRAY = 0.2
 """How far an element may move before pairs that may touch are listed anew, in the smallest radius"""
 
 
-def is_built_in(feature: Any, *methods: str) -> bool:
-    """Return whether a feature can be lowered: no subclass has overridden what it does.
+def is_built_in(cls: type, methods: Sequence[str]) -> bool:
+    """Return whether features of a class can be lowered: no subclass has overridden what it does.
 
     A user's subclass is called even if it has not: it is there to be changed during a run. Only what exists in
     the compiled step alone cannot be.
     """
-    cls = type(feature)
     if not (cls.__module__.startswith(str(__package__)) or getattr(cls, "IS_COMPILED", False)):
         return False
     for each in cls.__mro__:

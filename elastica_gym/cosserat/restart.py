@@ -30,7 +30,7 @@ def save_state(
     folder.mkdir(parents=True, exist_ok=True)
     for path, system in _files(simulator, folder):
         np.savez(path, **system._fields)
-    steps = int(simulator.simulation.state.step[0])
+    steps = simulator.simulation.steps
     (folder / META).write_text(json.dumps({"time": float(time), "steps": steps}))
     if verbose:
         print(f"saved {len(list(_files(simulator, folder)))} systems at {time} s to {folder}")
@@ -56,7 +56,7 @@ def load_state(simulator: Any, directory: str | os.PathLike = "saved", verbose: 
                                      f"the simulator's is {system._fields[name].shape}")  # fmt: skip
                 system._fields[name][...] = data[name]
     # directors are corrected by this count, so it belongs to the state
-    simulator.simulation.state.step[0] = meta["steps"]
+    simulator.simulation.steps = meta["steps"]
     if verbose:
         print(f"loaded {folder} at {meta['time']} s")
     return float(meta["time"])

@@ -3,7 +3,7 @@
 import ctypes
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,12 @@ _BYSTANDER = Rod.straight(2, start=(1e6, 0.0, 0.0), direction=(1.0, 0.0, 0.0), n
                           radius=0.1, density=1.0, youngs_modulus=1.0, shear_modulus=1.0)  # fmt: skip
 INTERVALS = ("every", "step_skip", "sample_every")
 """Attributes of a callback that say how many steps are from one call to the next"""
+
+CALLED = {
+    "constraints": ("constrain_values", "constrain_rates"), "forcing": ("apply_forces", "apply_torques"),
+    "connections": ("apply_forces", "apply_torques"), "contacts": ("apply_contact",), "damping": ("dampen_rates",),
+}  # fmt: skip
+"""What a step calls of a user's own features, by their kind"""
 
 Call = Callable[[float], None]
 
@@ -57,15 +63,49 @@ class Hook:
         return 0
 
 
+class Callbacks:
+    """What is called between steps.
+
+    Parameters
+    ----------
+    declared : sequence of Declaration
+        In the order in which they are called.
+    """
+
+    def __init__(self, declared: Sequence[Declaration] = ()) -> None:
+        made = [(declaration.make(), declaration.observed) for declaration in declared]
+        self._all = [(callback, observed, _interval(callback)) for callback, observed in made]
+
+    def __iter__(self) -> Iterator[Any]:
+        return (callback for callback, _, _ in self._all)
+
+    def call(self, time: float, step: int) -> None:
+        """Call those that are due after a number of steps."""
+        for callback, observed, interval in self._all:
+            if step % interval == 0:
+                callback.make_callback(observed, np.float64(time), step)
+
+    def steps_to_next(self, step: int) -> int:
+        """Return how many steps are left from one until any is due."""
+        return min((interval - step % interval for _, _, interval in self._all), default=NEVER)
+
+    def close(self) -> None:
+        """Tell them that the simulation is over."""
+        for callback in self:
+            callback.on_close()
+
+
 class Simulation:
     """All that a finalized simulator runs on.
 
     Parameters
     ----------
     systems : sequence
-        Rods, rigid bodies and surfaces.
+        Rods and rigid bodies.
     declared : mapping
         The features of each kind, as declared.
+    callbacks : Callbacks, optional
+        Those of the systems.
 
     Attributes
     ----------
@@ -73,7 +113,9 @@ class Simulation:
         What the compiled step reads and writes.
     """
 
-    def __init__(self, systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]]) -> None:
+    def __init__(
+        self, systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]], callbacks: Callbacks | None = None
+    ) -> None:
         self.rods = [system for system in systems if isinstance(system, CosseratRod)]
         self.bodies = [system for system in systems if isinstance(system, RigidBodyBase)]
         # a Model has a rod: bodies alone get one that is far from everything and feels nothing
@@ -85,7 +127,7 @@ class Simulation:
         self._move_bodies()
         self._as_laid_out = self._material.copy()
         self._hooks = {name: Hook() for name in Hooks._fields}
-        self._callbacks: list[tuple[Any, Any, int]] = []
+        self.callbacks = callbacks or Callbacks()
         self._constraints: list[tuple[Any, Any]] = []
         self._has_warned = self._is_judged = False
 
@@ -95,9 +137,6 @@ class Simulation:
         self._add_joints(declared.get("connections", ()), builder)
         self._add_contacts(declared.get("contacts", ()), builder)
         self._add_dampers(declared.get("damping", ()), builder)
-        for declaration in declared.get("callbacks", ()):
-            callback = declaration.make()
-            self._callbacks.append((callback, declaration.observed, _interval(callback)))
         self.scene = builder.build()
         self._loading = DENSE if self._hooks["loads"].calls else builder.loading
 
@@ -141,7 +180,7 @@ class Simulation:
             (system,) = declaration.systems
             constraint = _make_constraint(declaration, system)
             self._constraints.append((constraint, system))
-            if is_built_in(constraint, "constrain_values", "constrain_rates"):
+            if is_lowered("constraints", declaration):
                 constraint.lower(builder)
             else:
                 self._hook("values", constraint.constrain_values, system)
@@ -150,7 +189,7 @@ class Simulation:
     def _add_loads(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
         for declaration in declared:
             load, (system,) = declaration.make(), declaration.systems
-            if is_built_in(load, "apply_forces", "apply_torques"):
+            if is_lowered("forcing", declaration):
                 load.lower(builder, system)
             else:
                 self._hook("loads", load.apply_forces, system)
@@ -159,7 +198,7 @@ class Simulation:
     def _add_joints(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
         for declaration in declared:
             joint, (one, two), (first, second) = declaration.make(), declaration.systems, declaration.indices
-            if is_built_in(joint, "apply_forces", "apply_torques"):
+            if is_lowered("connections", declaration):
                 # contact as a joint, as in 0.2.x, has no indices
                 for i, j in zip(np.ravel(first), np.ravel(second), strict=True) if np.size(first) else ((0, 0),):
                     joint.lower(builder, (one, int(i), two, int(j)))
@@ -171,7 +210,7 @@ class Simulation:
         for declaration in declared:
             contact, (one, two) = declaration.make(), declaration.systems
             contact.require_systems(one, two)
-            if is_built_in(contact, "apply_contact"):
+            if is_lowered("contacts", declaration):
                 contact.lower(builder, one, two)
             else:
                 self._hook("loads", contact.apply_contact, one, two)
@@ -182,7 +221,7 @@ class Simulation:
             damper = declaration.make(_system=system)
             if isinstance(damper, AnalyticalLinearDamper) and damper.time_step is not None:
                 self._warn_of(damper.time_step, [system] if isinstance(system, CosseratRod) else [])
-            if is_built_in(damper, "dampen_rates"):
+            if is_lowered("damping", declaration):
                 damper.lower(builder)
             else:
                 self._hook("damping", damper.dampen_rates, system)
@@ -200,7 +239,7 @@ class Simulation:
         """Apply constraints at time 0 and call back."""
         self.constrain_values(0.0)
         self.constrain_rates(0.0)
-        self.call_back(0.0, 0)
+        self.callbacks.call(0.0, 0)
 
     def constrain_values(self, time: float) -> None:
         """Apply the constraints of positions and directors."""
@@ -212,24 +251,18 @@ class Simulation:
         for constraint, system in self._constraints:
             constraint.constrain_rates(system, np.float64(time))
 
-    def call_back(self, time: float, step: int) -> None:
-        """Call the callbacks that are due after a number of steps."""
-        for callback, observed, interval in self._callbacks:
-            if step % interval == 0:
-                callback.make_callback(observed, np.float64(time), step)
+    @property
+    def steps(self) -> int:
+        """How many steps have been taken."""
+        return int(self.state.step[0])
 
-    def close(self) -> None:
-        """Tell callbacks that the simulation is over."""
-        for callback, _, _ in self._callbacks:
-            callback.on_close()
-
-    def steps_to_callback(self, step: int) -> int:
-        """Return how many steps are left from one until a callback is due."""
-        return min((interval - step % interval for _, _, interval in self._callbacks), default=NEVER)
+    @steps.setter
+    def steps(self, count: int) -> None:
+        self.state.step[0] = count
 
     def advance(self, scheme: Scheme, dt: float, n_steps: int, time: float) -> float:
         """Take steps from a time on, without callbacks, and return the time after [s]."""
-        self._require_time_step(dt)
+        self.require_time_step(dt)
         if not np.array_equal(self._material, self._as_laid_out):
             for rod, first in zip(self.rods, self.model.first_slot, strict=True):
                 lay_out(self.model._asdict(), _laid(rod), int(first))
@@ -259,7 +292,8 @@ class Simulation:
             if error is not None:
                 raise error
 
-    def _require_time_step(self, dt: float) -> None:
+    def require_time_step(self, dt: float) -> None:
+        """Raise ValueError unless a time step is a positive number; warn of one that is too large, once."""
         if not (math.isfinite(dt) and dt > 0.0):
             raise ValueError(f"the time step must be a positive number, not {dt}")
         if not self._is_judged:
@@ -273,6 +307,11 @@ class Simulation:
             self._has_warned = True
             warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the stable one of a rod at rest",
                           RuntimeWarning, stacklevel=5)  # fmt: skip
+
+
+def is_lowered(kind: str, declaration: Declaration) -> bool:
+    """Return whether a feature of a kind is part of the compiled step, rather than called by it."""
+    return declaration.cls is not None and is_built_in(declaration.cls, CALLED[kind])
 
 
 def _laid(rod: CosseratRod) -> Lowered:

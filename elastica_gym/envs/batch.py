@@ -1,9 +1,6 @@
 """The batched environment: all logic, over a leading environment axis."""
 
-import functools
-import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
 from copy import deepcopy
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +13,10 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ..bodies.body import Pose, activate, feel, make_pose
-from ..cosserat import advance, advance_queue, at_rest
+from ..cosserat import advance, advance_together, at_rest
 from ..cosserat.model import Array, Index
 from ..cosserat.rod import require_positive, require_stable
+from ..cosserat.threads import available_cpus
 from ..muscles import N_ACTIVATIONS, activation_names
 from .task import Mask, Situation, Task
 
@@ -30,8 +28,6 @@ CONTROL_DT = 0.05
 """Duration of a control step unless another is asked for [s]"""
 CLOCK_PERIOD = 1.0
 """Period of the clock that animals feel [s]"""
-APART = 5
-"""Threads take every so-manieth environment: a CPU that reads ahead of one would fetch what another writes to the next"""
 RENDER_MODES = ("rgb_array",)
 """Ways to draw, of which Gymnasium knows more"""
 
@@ -104,7 +100,7 @@ class BatchEnv(VectorEnv):
         if self.spread not in task.starts:
             raise ValueError(f"spread must be one of {', '.join(task.starts)}, not {spread!r}")
         self._draw_start = task.starts[self.spread]
-        self.n_threads = _available_cpus() if n_threads is None else n_threads
+        self.n_threads = available_cpus() if n_threads is None else n_threads
         _require_count("n_threads", self.n_threads, 4096)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         self._set_times(control_dt, self.body.sim_dt if sim_dt is None else sim_dt,
@@ -145,7 +141,6 @@ class BatchEnv(VectorEnv):
         n = self.num_envs
         n_objects = len(self.body.cylinders)
         self.state, self.control = at_rest(self.body.model, self.body.rods, n, cylinders=self.body.cylinders)
-        self._order = np.argsort(np.arange(n) % APART, kind="stable")
         self.pose, self._before = make_pose(n, n_objects), make_pose(n, n_objects)
         self.goal = np.zeros((n, self.task.goal_size))
         self.progress, self._progress_before = (np.zeros((n, len(self.task.progress_names))) for _ in range(2))
@@ -288,7 +283,8 @@ class BatchEnv(VectorEnv):
     def _advance(self) -> None:
         """Move the animals, and feel where they are."""
         activate(self.body.couples, self.activations, self.control.couple)
-        self._advance_physics()
+        advance_together(self.body.model, self.state, self.control, self.num_envs, self.sim_dt, self.n_substeps,
+                         self.n_threads)  # fmt: skip
         # the physics does the same to couples, in n_substeps parts
         tau = self.body.muscles.activation_time
         self.levels += (self.activations - self.levels) * (1.0 - np.exp(-self.control_dt / tau))
@@ -309,21 +305,6 @@ class BatchEnv(VectorEnv):
     def _follow(self, where: Mask | Index) -> None:
         """Follow the episodes of some environments."""
         self.progress[where] = self.task.follow(self.situation(), self.state)[where]
-
-    def _advance_physics(self) -> None:
-        """Run all substeps of a control step, the environments shared among threads."""
-        n_helpers = min(self.n_threads, self.num_envs) - 1
-        queue = np.zeros(1, dtype=np.int64)
-        work = self.body.model, self.state, self.control, self._order, queue, self.sim_dt, self.n_substeps
-        pool = _pool(os.getpid(), n_helpers)
-        futures = [pool.submit(advance_queue, *work) for _ in range(n_helpers)]
-        try:
-            advance_queue(*work)
-        finally:
-            # also after Ctrl-C: nobody writes State when this returns
-            wait(futures)
-        for future in futures:
-            future.result()
 
     @property
     def observations(self) -> Observations:
@@ -488,17 +469,6 @@ class BatchEnv(VectorEnv):
 
 _EPISODE_STATE = ("goal", "progress", "_progress_before", "elapsed", "activations", "levels", "_readings",
                   "_observations", "_distance", "_ended")  # fmt: skip
-
-
-@functools.lru_cache(maxsize=8)
-def _pool(process: int, n_threads: int) -> ThreadPoolExecutor:
-    """Return this process's threads; a forked child makes its own, for its parent's did not come along."""
-    return ThreadPoolExecutor(max_workers=max(1, n_threads), thread_name_prefix="elastica_gym")
-
-
-def _available_cpus() -> int:
-    """Return how many CPUs this process may run on, which may be fewer than there are."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _require_count(name: str, value: int, most: int) -> None:

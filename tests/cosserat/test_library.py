@@ -367,7 +367,7 @@ def test_temporary_exports_keep_every_file():
     sim.finalize()
     integrate(sim, 120)
     sim.close()
-    (callback,) = (each for each, _, _ in sim.simulation._callbacks)
+    (callback,) = sim.simulation.callbacks
     last = Path(callback.get_last_saved_path())
     files = sorted(last.parent.iterdir())
     assert [path.name for path in files] == ["rod_00.pkl", "rod_01.pkl", "rod_02.pkl"]

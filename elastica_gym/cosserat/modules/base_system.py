@@ -11,6 +11,7 @@ from ..surface.plane import Plane
 from .declaration import Declaration
 
 if TYPE_CHECKING:
+    from ..ensemble import Ensemble
     from ..simulation import Simulation
 
 
@@ -36,7 +37,7 @@ class BaseSystemCollection(MutableSequence):
         # by the identity of each system: a search through them would make many rods slow to declare
         self._places: dict[int, int] = {}
         self._declared: dict[str, list[Declaration]] = {}
-        self._simulation: Simulation | None = None
+        self._simulation: Simulation | Ensemble | None = None
         super().__init__()
 
     # a list
@@ -143,16 +144,16 @@ class BaseSystemCollection(MutableSequence):
         RuntimeError
             If it was called before, if there is no rod, or if a feature was declared without a class.
         """
-        from ..simulation import Simulation
+        from ..ensemble import simulate_systems
 
         self._require_open("finalize again")
         if not any(isinstance(system, CosseratRod | RigidBodyBase) for system in self._systems):
             raise RuntimeError("there is nothing to simulate: append a rod or a rigid body before finalize")
-        self._simulation = Simulation(self._systems, self._declared)
+        self._simulation = simulate_systems(self._systems, self._declared)
         self._simulation.begin()
 
     @property
-    def simulation(self) -> "Simulation":
+    def simulation(self) -> "Simulation | Ensemble":
         """The simulation behind this collection.
 
         Raises
@@ -174,11 +175,11 @@ class BaseSystemCollection(MutableSequence):
 
     def apply_callbacks(self, time: float, current_step: int) -> None:
         """Call all callbacks."""
-        self.simulation.call_back(time, current_step)
+        self.simulation.callbacks.call(time, current_step)
 
     def close(self) -> None:
         """Tell callbacks that the simulation is over."""
-        self.simulation.close()
+        self.simulation.callbacks.close()
 
     def _require_open(self, action: str) -> None:
         if self._simulation is not None:

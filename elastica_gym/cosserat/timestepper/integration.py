@@ -45,11 +45,11 @@ def integrate(
     done, most = 0, 1
     while done < n_steps:
         number = round(time / dt)
-        count = min(n_steps - done, simulation.steps_to_callback(number), most)
+        count = min(n_steps - done, simulation.callbacks.steps_to_next(number), most)
         started = clock.perf_counter()
         time = simulation.advance(stepper.scheme, dt, count, time)
         most = max(1, int(count * ENTRY_TIME / max(clock.perf_counter() - started, 1e-9)))
-        simulation.call_back(time, round(time / dt))
+        simulation.callbacks.call(time, round(time / dt))
         simulation.clear_loads()
         done += count
         progress.show(done, time)
