@@ -17,7 +17,7 @@ from .flow import resist
 from .hooks import call
 from .joints import join
 from .kinematics import orthonormalise
-from .loads import clear, clear_at, dead_force, dead_torque, external, external_at, viscosity, wave
+from .loads import clear, clear_at, dead_force, dead_torque, external, external_at, wave
 from .pairs import ground_bodies, touch_bodies, touch_rods
 from .rings import follow, hand_back
 from .sides import join_sides
@@ -149,17 +149,6 @@ def add_loads(scene, state, control, n, loading):
 
 
 @inner
-def resistance(model, scene, state, n):
-    """Add to the net loads what velocities meet: the documented damping, and drag."""
-    s = state
-    force, torque, v, w = rows(s.force[0]), rows(s.torque[0]), rows(s.v[0]), rows(s.w[0])
-    if model.is_viscous:
-        viscosity(FIRST, n, v, w, s.length[0], (model.viscosity[0], model.viscosity[1]), force, torque)
-    if scene.drag.is_on:
-        drag(FIRST, n, v, w, scene.drag.force, scene.drag.torque, force, torque)
-
-
-@inner
 def ground(model, scene, state):
     """Add the response and friction of each plane to the rods that it acts on, after all other loads."""
     state.normal_force[0, :] = 0.0
@@ -249,7 +238,9 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
                 if external_loads(model, scene, state, control, hooks, n) != 0:
                     return 1
                 add_loads(scene, state, control, n, loading)
-            resistance(model, scene, state, n)
+            if scene.drag.is_on:
+                drag(FIRST, n, rows(state.v[0]), rows(state.w[0]), scene.drag.force, scene.drag.torque,
+                     rows(state.force[0]), rows(state.torque[0]))  # fmt: skip
             if scene.rings.first.size > 0:
                 hand_back(scene.rings, state.force[0], state.torque[0])
             if scene.planes.stiffness.size > 0:

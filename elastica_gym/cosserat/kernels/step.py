@@ -11,7 +11,7 @@ from .curvature import bending, logarithm, relative_rotation
 from .cylinders import cylinders_on_planes, rods_on_cylinders
 from .dynamics import dynamics
 from .kinematics import kinematics, kinematics_twice, orthonormalise
-from .loads import balance, external, viscosity, wave
+from .loads import balance, external, wave
 from .plane import slide, slip, stick, to_nodes, touch
 from .queue import take
 from .rods import rods_on_rods
@@ -52,7 +52,7 @@ def drift_twice(model, state, i, n, h):
 
 @inner
 def internal(model, state, control, i, first, n, dt):
-    """Compute the forces and torques of strains, and gravity, of the rods from slot ``first`` to n - 1."""
+    """Compute the forces and torques of strains, gravity and damping, of the rods from slot ``first`` to n - 1."""
     m, s, c = model, state, control
     x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
     force, torque, kappa = rows(s.force[i]), rows(s.torque[i]), rows(s.kappa[i])
@@ -67,7 +67,8 @@ def internal(model, state, control, i, first, n, dt):
     logarithm(first, n, m.is_balanced, m.inv_rest_voronoi_length, cosine, kappa, lever)
     bending(first, n, s.length[i], kappa, lever, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]), rate,
             rows(c.couple[i]), rows(s.couple[i]), before, after)  # fmt: skip
-    balance(first, n, stress, before, after, m.mass, m.gravity, force, torque)
+    balance(first, n, stress, before, after, m.mass, m.gravity, m.is_viscous, v, w, s.length[i],
+            (m.viscosity[0], m.viscosity[1]), force, torque)  # fmt: skip
 
 
 @inner
@@ -77,8 +78,6 @@ def applied(model, state, control, i, n, time):
     force, torque = rows(s.force[i]), rows(s.torque[i])
     if m.is_loaded:
         external(FIRST, n, rows(c.force[i]), rows(c.torque[i]), force, torque)
-    if m.is_viscous:
-        viscosity(FIRST, n, rows(s.v[i]), rows(s.w[i]), s.length[i], (m.viscosity[0], m.viscosity[1]), force, torque)
     for j in range(m.waves.ramp_time.size):
         waves, ramp = m.waves, m.waves.ramp_time[j]
         strength = time / ramp if time < ramp else 1.0
