@@ -116,8 +116,9 @@ def command_of(config: dict[str, Any]) -> str:
     if config.get("minutes") is not None:
         words += ["--minutes", f"{config['minutes']:g}"]
     if config.get("start_from") is not None:
-        # the folder it was in is of no use elsewhere: the id and the name of that run are
-        words += ["--start-from", str(Path("runs", *Path(config["start_from"]).parts[-2:]))]
+        start = config["start_from"]
+        # the folder that a run was in is of no use elsewhere: the id and the name of that run are
+        words += ["--start-from", start if start in names() else str(Path("runs", *Path(start).parts[-2:]))]
     if config.get("imitate"):
         words += ["--imitate", str(config["imitate"])]
     changed = {key: value for key, value in values.items() if shipped.get(key) != value}

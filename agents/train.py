@@ -37,8 +37,9 @@ class TrainArguments:
     """Hyperparameters to go before the configuration's, as KEY=VALUE, such as learning_rate=0.0005 gamma=0.99."""
     config: Path | None = None
     """Another configuration file of the same format."""
-    start_from: Path | None = None
-    """Folder of a run of the same algorithm to begin with its networks, as of an easier task of the same animal."""
+    start_from: str | None = None
+    """Folder of a run, or name of a pretrained policy, of the same algorithm to begin with its networks, as of an
+    easier task of the same animal."""
     imitate: int = 0
     """Environment steps in which the networks first learn to do as the task's scripted policy does; not counted in
     `steps`."""
@@ -113,7 +114,7 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     values = hyperparameters.load(arguments.algo, arguments.env, config=arguments.config, overrides=overrides)
     config = {
         **{key: value for key, value in dataclasses.asdict(arguments).items() if key not in _NOT_IN_CONFIG},
-        "start_from": None if arguments.start_from is None else str(arguments.start_from.resolve()),
+        "start_from": _start(arguments.start_from),
         "steps": int(values["n_timesteps"]) if arguments.steps is arguments.minutes is None else arguments.steps,
         "hyperparameters": values,
         "versions": {"python": platform.python_version(), **_versions()},
@@ -123,6 +124,18 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     if (folder / "config.yml").exists():
         raise BadInputError(f"The folder {folder} has a run already: use another, or {_resume_command(folder)}")
     return make_folder(folder), config
+
+
+def _start(start: str | None) -> str | None:
+    """Return the name of a pretrained policy as it is, and the whole path of a run."""
+    from agents.cards import names
+
+    if start is None or start in names():
+        return start
+    if not Path(start).is_dir():
+        raise BadInputError(f"--start-from {start} is neither the folder of a run nor a pretrained policy, "
+                            f"of which there are: {', '.join(names())}")  # fmt: skip
+    return str(Path(start).resolve())
 
 
 _NOT_IN_CONFIG = {"set", "config", "n_envs", "out", "folder", "resume"}

@@ -18,10 +18,11 @@ import torch
 from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.utils import safe_mean
 from stable_baselines3.common.vec_env import VecNormalize
 
-from agents import curves, transfer
+from agents import cards, curves, transfer
 from agents.checkpoints import checkpoint_folders, last_whole_checkpoint, write_atomically, write_checkpoint
 from agents.checks import BadInputError
 from agents.evaluate import evaluate, record
@@ -91,7 +92,7 @@ class Training:
         saved: dict[str, Any] = {"seconds": 0.0, "table_sizes": (0, 0)}
         self.model = self._new_model() if checkpoint is None else self._load_model(checkpoint)
         if checkpoint is None and config.get("start_from"):
-            self._take_over(Path(config["start_from"]))
+            self._take_over(config["start_from"])
         self.model.set_logger(Logger(folder=None, output_formats=[]))
         if checkpoint is not None:
             saved = self._load_state(checkpoint)
@@ -132,27 +133,27 @@ class Training:
         except (TypeError, ValueError, AssertionError) as error:
             raise BadInputError(f"Stable-Baselines3 refuses the hyperparameters: {error}") from error
 
-    def _take_over(self, run: Path) -> None:
-        """Begin with the networks of another run and with its statistics of observations; explore as if new.
+    def _take_over(self, start: str) -> None:
+        """Begin with the networks of another run or a pretrained policy and its statistics of observations.
 
-        What is seen here and was not there counts for nothing at first.
+        Explores as if new. What is seen here and was not there counts for nothing at first.
         """
-        other, config = load_run(run)
+        other, known, env_id, algo = _networks(start)
         now = self.adapter.batch.observation_names
-        weights = {name: value for name, value in other.model.policy.state_dict().items() if name != "log_std"}
+        weights = {name: value for name, value in other.policy.state_dict().items() if name != "log_std"}
         try:
-            where = transfer.places(observation_names(config["env"]), now)
+            where = transfer.places(observation_names(env_id), now)
             shapes = {name: value.shape for name, value in self.model.policy.state_dict().items()}
             weights = transfer.widened(weights, shapes, where)
             absent, unknown = self.model.policy.load_state_dict(weights, strict=False)
         except (RuntimeError, ValueError) as error:
             absent, unknown = [str(error)], []
         if set(absent) - {"log_std"} or unknown:
-            raise BadInputError(f"The networks of {run}, {config['algo']} on {config['env']}, do not fit: "
+            raise BadInputError(f"The networks of {start}, {algo} on {env_id}, do not fit: "
                                 f"{', '.join([*absent, *unknown])}")  # fmt: skip
         normalize = self.model.get_vec_normalize_env()
-        if normalize is not None and other.normalization is not None:
-            normalize.obs_rms = transfer.statistics(other.normalization.obs_rms, len(now), where)
+        if normalize is not None and known is not None:
+            normalize.obs_rms = transfer.statistics(known, len(now), where)
 
     def _load_model(self, checkpoint: Path) -> Any:
         env: Any = self.adapter
@@ -408,3 +409,14 @@ ITERATIONS: dict[type, Callable[[Any, BaseCallback, Budget], None]] = {PPO: iter
 
 def _plain(value: Any) -> int | float:
     return value if isinstance(value, int) else float(value)
+
+
+def _networks(start: str) -> tuple[Any, RunningMeanStd | None, str, str]:
+    """Return the model of a pretrained policy or of a run, its statistics, the id of its environment, its algorithm."""
+    if start in cards.names():
+        policy, card = cards.load_pretrained(start)
+        known = None if policy.normalization is None else transfer.counted(policy.normalization)
+        return policy.model, known, card["environment"], card["algorithm"]
+    policy, config = load_run(Path(start))
+    known = None if policy.normalization is None else policy.normalization.obs_rms
+    return policy.model, known, config["env"], config["algo"]

@@ -7,9 +7,11 @@ import numpy as np
 import torch
 from stable_baselines3.common.running_mean_std import RunningMeanStd
 
+from agents.policies import Statistics
+
 KNOWN = 10_000
-"""How many observations the statistics stand for where some of them are of another task's, and some of none: few, so
-that those of what was not seen before are soon its own"""
+"""How many observations the statistics stand for where that is not known, or some of them are of another task's, and
+some of none: few, so that those of what was not seen before are soon its own"""
 
 
 def places(before: Sequence[str], now: Sequence[str]) -> list[int]:
@@ -69,3 +71,10 @@ def statistics(known: Any, n: int, where: Sequence[int]) -> RunningMeanStd:
     wide.mean[np.asarray(where)], wide.var[np.asarray(where)] = known.mean, known.var
     wide.count = min(known.count, KNOWN)
     return wide
+
+
+def counted(known: Statistics) -> RunningMeanStd:
+    """Return the statistics of a pretrained policy, which do not say how much they stand for, as of `KNOWN` steps."""
+    counted = RunningMeanStd(shape=known.mean.shape)
+    counted.mean, counted.var, counted.count = known.mean.copy(), known.variance.copy(), KNOWN
+    return counted

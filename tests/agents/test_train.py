@@ -9,6 +9,7 @@ from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
 
 from agents import hyperparameters, transfer
+from agents.cards import command_of, load_pretrained
 from agents.policies import load_run
 from agents.vec_env import make_batch_vec_env, observation_names
 from tests.agents.commands import FORWARD, REACH, SMALL, SMALL_EPISODES, SMALL_PPO, run
@@ -93,6 +94,23 @@ def test_a_run_starts_from_the_networks_of_another(ppo_run, tmp_path):
     output = run("agents.train", "--env", CRAWL, "--steps", 40, "--start-from", ppo_run, "--folder",
                  tmp_path / "misfit", *SMALL_PPO, status=2)  # fmt: skip
     assert "do not fit" in output and FORWARD in output and "not seen here: " in output
+
+
+def test_a_run_starts_from_a_pretrained_policy(tmp_path):
+    run("agents.train", "--env", REACH, "--steps", 40, "--start-from", "snake_reach_ppo", "--folder", tmp_path / "next",
+        *SMALL_PPO, "learning_rate=0.0")  # fmt: skip
+    begun, theirs = load_run(tmp_path / "next")[0], load_pretrained("snake_reach_ppo")[0]
+    weights = begun.model.policy.state_dict()
+    for name, value in theirs.model.policy.state_dict().items():
+        assert torch.equal(value, weights[name]) == (name != "log_std"), name
+    assert begun.normalization.obs_rms.count > transfer.KNOWN
+    # of forty steps among ten thousand
+    np.testing.assert_allclose(begun.normalization.obs_rms.mean, theirs.normalization.mean, atol=0.1)
+    config = yaml.safe_load((tmp_path / "next" / "config.yml").read_text())
+    assert config["start_from"] == "snake_reach_ppo" and "--start-from snake_reach_ppo" in command_of(config)
+    output = run("agents.train", "--env", REACH, "--start-from", "snake_rech_ppo", "--folder", tmp_path / "none",
+                 *SMALL_PPO, status=2)  # fmt: skip
+    assert "snake_rech_ppo is neither" in output and "snake_reach_ppo" in output
 
 
 def test_what_a_run_sees_more_than_the_one_it_starts_from_counts_for_nothing_at_first(ppo_run, tmp_path):
