@@ -30,8 +30,8 @@ from .surroundings import Contact, Cylinder, Plane, Wave, net_couple
 def build_model(
     rods: Sequence[Continuum], *, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
     gravity: ArrayLike = (0.0, 0.0, 0.0), activation_time: float = 0.0, is_loaded: bool = False,
-    is_balanced: bool = False,
-    cylinders: Sequence[Cylinder] = (), rod_contact: Contact | None = None,
+    is_muscular: bool = True, is_balanced: bool = False, cylinders: Sequence[Cylinder] = (),
+    rod_contact: Contact | None = None,
 ) -> Model:  # fmt: skip
     """Lay rods out one after another and collect what acts on them.
 
@@ -49,6 +49,8 @@ def build_model(
         Time constant with which muscle couples approach those set in Control, 0 for immediately [s].
     is_loaded : bool
         Whether ``Control.force`` and ``Control.torque`` act.
+    is_muscular : bool
+        Whether ``Control.couple`` acts.
     is_balanced : bool
         Whether the couples that a joint exerts on its two elements are exactly opposite, which conserves angular
         momentum. By default they are as documented (Gazzola et al. 2018, eq. 2.21) and PyElastica has them: in three
@@ -82,7 +84,8 @@ def build_model(
         lay_out(fields, rod, int(start))
     return Model(
         first_slot=first.astype(np.int64), n_elements=counts.astype(np.int64), **fields,
-        gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_viscous=bool(fields["viscosity"].any()),
+        gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_muscular=is_muscular,
+        is_viscous=bool(fields["viscosity"].any()),
         is_balanced=is_balanced, activation_time=float(activation_time), planes=plane_table(planes),
         waves=_wave_table(waves, rods, first, slots), cylinders=_cylinder_table(cylinders),
         rod_contact=_rod_contact(rod_contact, rods, first, slots),

@@ -154,6 +154,8 @@ class Model(NamedTuple):
     """Acceleration of gravity [m/s^2], (3,)"""
     is_loaded: bool
     """Whether the external loads of Control act"""
+    is_muscular: bool
+    """Whether the muscle couples of Control act"""
     is_viscous: bool
     """Whether any viscosity is not zero"""
     is_balanced: bool

@@ -121,7 +121,7 @@ class Simulation:
         # a Model has a rod: bodies alone get one that is far from everything and feels nothing
         lowered: list[Continuum] = [_laid(rod) for rod in self.rods] or [_BYSTANDER]
         bodies: Any = [body._lowered() for body in self.bodies]
-        self.model = build_model(lowered, cylinders=bodies)
+        self.model = build_model(lowered, cylinders=bodies, is_muscular=False)
         self.state, self.control = at_rest(self.model, lowered, cylinders=bodies)
         self._material = self._move_rods()
         self._move_bodies()

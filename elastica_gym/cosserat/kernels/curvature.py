@@ -52,7 +52,8 @@ def logarithm(first, n, is_balanced, inv_rest_voronoi_length, cosine, kappa, lev
 
 @stage
 def bending(
-    first, n, length, kappa, lever, rest_voronoi_length, B, rest_kappa, rate, target, couple, before, after,
+    first, n, length, kappa, lever, rest_voronoi_length, B, rest_kappa, is_muscular, rate, target, couple,
+    before, after,
 ):  # fmt: skip
     """Compute the couples on the elements before and after each joint, and activate the muscles.
 
@@ -60,22 +61,24 @@ def bending(
     the sum and the one after the difference. To be opposite in the lab, the two had to be turned into
     each other by the joint's angle theta; they are if theta/2, which is |kappa| D^/2, gives way to tan(theta/2).
 
-    The muscle couple joins tau_L, so it acts equally and oppositely on the two elements it joins. It
-    approaches its target by the fraction ``rate`` a step.
+    The muscle couple, where there is one, joins tau_L, so it acts equally and oppositely on the two elements
+    it joins. It approaches its target by the fraction ``rate`` a step.
     """
     for k in range(first, n):
         j = k + ONE
         k0, k1, k2 = kappa[0][k], kappa[1][k], kappa[2][k]
         h0, h1, h2 = lever[0][k], lever[1][k], lever[2][k]
-        m0 = couple[0][k] + rate * (target[0][k] - couple[0][k])
-        m1 = couple[1][k] + rate * (target[1][k] - couple[1][k])
-        m2 = couple[2][k] + rate * (target[2][k] - couple[2][k])
+        m0 = m1 = m2 = 0.0
+        if is_muscular:
+            m0 = couple[0][k] + rate * (target[0][k] - couple[0][k])
+            m1 = couple[1][k] + rate * (target[1][k] - couple[1][k])
+            m2 = couple[2][k] + rate * (target[2][k] - couple[2][k])
+            couple[0][k], couple[1][k], couple[2][k] = m0, m1, m2
         inv_E = 2.0 * rest_voronoi_length[k] / (length[k] + length[j])
         inv_E3 = inv_E * inv_E * inv_E
         t0 = (B[0][k] * (k0 - rest_kappa[0][k]) + m0) * inv_E3
         t1 = (B[1][k] * (k1 - rest_kappa[1][k]) + m1) * inv_E3
         t2 = (B[2][k] * (k2 - rest_kappa[2][k]) + m2) * inv_E3
-        couple[0][k], couple[1][k], couple[2][k] = m0, m1, m2
         c0, c1, c2 = h1 * t2 - h2 * t1, h2 * t0 - h0 * t2, h0 * t1 - h1 * t0
         before[0][k], before[1][k], before[2][k] = c0 + t0, c1 + t1, c2 + t2
         after[0][k], after[1][k], after[2][k] = c0 - t0, c1 - t1, c2 - t2

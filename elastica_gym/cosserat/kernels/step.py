@@ -65,8 +65,8 @@ def internal(model, state, control, i, first, n, dt):
             rows(m.inertia), stress, torque)  # fmt: skip
     relative_rotation(first, n, Q, kappa, cosine)
     logarithm(first, n, m.is_balanced, m.inv_rest_voronoi_length, cosine, kappa, lever)
-    bending(first, n, s.length[i], kappa, lever, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]), rate,
-            rows(c.couple[i]), rows(s.couple[i]), before, after)  # fmt: skip
+    bending(first, n, s.length[i], kappa, lever, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]),
+            m.is_muscular, rate, rows(c.couple[i]), rows(s.couple[i]), before, after)  # fmt: skip
     balance(first, n, stress, before, after, m.mass, m.gravity, m.is_viscous, v, w, s.length[i],
             (m.viscosity[0], m.viscosity[1]), force, torque)  # fmt: skip
 
