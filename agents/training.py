@@ -415,7 +415,7 @@ def _networks(start: str) -> tuple[Any, RunningMeanStd | None, str, str]:
     """Return the model of a pretrained policy or of a run, its statistics, the id of its environment, its algorithm."""
     if start in cards.names():
         policy, card = cards.load_pretrained(start)
-        known = None if policy.normalization is None else transfer.counted(policy.normalization)
+        known = None if policy.normalization is None else transfer.counted(policy.normalization, card["steps"])
         return policy.model, known, card["environment"], card["algorithm"]
     policy, config = load_run(Path(start))
     known = None if policy.normalization is None else policy.normalization.obs_rms

@@ -10,8 +10,8 @@ from stable_baselines3.common.running_mean_std import RunningMeanStd
 from agents.policies import Statistics
 
 KNOWN = 10_000
-"""How many observations the statistics stand for where that is not known, or some of them are of another task's, and
-some of none: few, so that those of what was not seen before are soon its own"""
+"""How many observations the statistics stand for where some of them are of another task's, and some of none: few, so
+that those of what was not seen before are soon its own"""
 
 
 def places(before: Sequence[str], now: Sequence[str]) -> list[int]:
@@ -73,8 +73,11 @@ def statistics(known: Any, n: int, where: Sequence[int]) -> RunningMeanStd:
     return wide
 
 
-def counted(known: Statistics) -> RunningMeanStd:
-    """Return the statistics of a pretrained policy, which do not say how much they stand for, as of `KNOWN` steps."""
+def counted(known: Statistics, count: int) -> RunningMeanStd:
+    """Return the statistics of a pretrained policy as those of so many observations.
+
+    With fewer than there were, they would soon be those of the new task, and the networks see something else.
+    """
     counted = RunningMeanStd(shape=known.mean.shape)
-    counted.mean, counted.var, counted.count = known.mean.copy(), known.variance.copy(), KNOWN
+    counted.mean, counted.var, counted.count = known.mean.copy(), known.variance.copy(), count
     return counted

@@ -22,6 +22,9 @@ TOUCH = 0.002
 DEEPEST = 0.005
 """Overlap up to which they do: what is deeper in each other than any contact would allow does not count as touch [m]"""
 
+NEARBY = 0.15
+"""Gap from which on an element is not near the object at all [m]"""
+
 
 class Grip(NamedTuple):
     """How each of B animals of E elements touches its first object."""
@@ -33,6 +36,9 @@ class Grip(NamedTuple):
     spans: Array
     """Angle about the object's axis from the first to the last element of each arm that touches it, followed along
     the arm [rad], (B, 2)"""
+    windings: Array
+    """The same angle of all elements, each part of it times how near they are: 1 where they touch, falling to 0 at a
+    gap of `NEARBY` [rad], (B, 2)"""
     counts: Index
     """How many elements of each arm touch it, (B, 2) int64"""
     base: Array
@@ -59,15 +65,16 @@ def grip(body: Body, state: State) -> Grip:
     thing, n_envs = body.model.cylinders, len(state.x)
     centre, axis = state.body_x[:, 0], state.body_Q[:, 0, 2]
     gaps = np.zeros((n_envs, int(body.model.n_elements[0])))
-    spans, counts = np.zeros((n_envs, 2)), np.zeros((n_envs, 2), dtype=np.int64)
+    spans, windings, counts = np.zeros((n_envs, 2)), np.zeros((n_envs, 2)), np.zeros((n_envs, 2), dtype=np.int64)
     elements = slice(first, first + gaps.shape[1])
     nodes = slice(first, first + gaps.shape[1] + 1)
     _measure(np.ascontiguousarray(state.x[:, :, nodes]), np.ascontiguousarray(state.radius[:, elements]), arms,
              np.ascontiguousarray(centre), np.ascontiguousarray(axis), float(thing.length[0]), float(thing.radius[0]),
-             gaps, spans, counts)  # fmt: skip
+             gaps, spans, windings, counts)  # fmt: skip
     return Grip(
-        gaps=gaps, head_gap=gaps[:, arms[0, 1] : arms[1, 0]].min(axis=1), spans=spans, counts=counts,
-        base=centre - 0.5 * thing.length[0] * axis, tilt=np.arctan2(np.hypot(axis[:, 0], axis[:, 2]), axis[:, 1]),
+        gaps=gaps, head_gap=gaps[:, arms[0, 1] : arms[1, 0]].min(axis=1), spans=spans, windings=windings,
+        counts=counts, base=centre - 0.5 * thing.length[0] * axis,
+        tilt=np.arctan2(np.hypot(axis[:, 0], axis[:, 2]), axis[:, 1]),
     )  # fmt: skip
 
 
@@ -78,8 +85,8 @@ def arm_elements(body: Body) -> Index:
 
 
 @entry
-def _measure(x, radius, arms, centres, axes, length, thickness, gaps, spans, counts):
-    """Compute the gaps of all elements, and the span and count of each arm, environment by environment."""
+def _measure(x, radius, arms, centres, axes, length, thickness, gaps, spans, windings, counts):
+    """Compute the gaps of all elements, and the span, winding and count of each arm, environment by environment."""
     for i in range(x.shape[0]):
         centre, axis = vector(centres[i]), vector(axes[i])
         start, edge = plus(centre, -0.5 * length, axis), times(length, axis)
@@ -88,14 +95,17 @@ def _measure(x, radius, arms, centres, axes, length, thickness, gaps, spans, cou
             depth, _, _ = overlap(first, plus(column(x[i], k + 1), -1.0, first), radius[i, k], start, edge, thickness)
             gaps[i, k] = -depth
         for arm in range(arms.shape[0]):
-            azimuth = begin = end = deepest = 0.0
+            azimuth = winding = begin = end = deepest = 0.0
             last, count = (0.0, 0.0, 0.0), 0
             for k in range(arms[arm, 0], arms[arm, 1]):
                 way = plus(middle(x[i], k), -1.0, centre)
-                azimuth += atan2(dot(axis, cross(last, way)), dot(last, way) - dot(axis, last) * dot(axis, way))
+                turn = atan2(dot(axis, cross(last, way)), dot(last, way) - dot(axis, last) * dot(axis, way))
+                azimuth += turn
+                winding += turn * min(max(1.0 - gaps[i, k] / NEARBY, 0.0), 1.0)
                 last, deepest = way, min(deepest, gaps[i, k])
                 if gaps[i, k] <= TOUCH:
                     begin, end = azimuth if count == 0 else begin, azimuth
                     count += 1
             spans[i, arm] = abs(end - begin) if deepest >= -DEEPEST else 0.0
+            windings[i, arm] = abs(winding)
             counts[i, arm] = count if deepest >= -DEEPEST else 0

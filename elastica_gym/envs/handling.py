@@ -44,6 +44,8 @@ class Handling(NamedTuple):
     """Least distance of the object's surface from the half of an arm that is next to the head [m]"""
     span: Array
     """The larger of the angles around the object's axis that an arm's touching elements span [rad]"""
+    winding: Array
+    """The larger of the angles that an arm winds around it, near as it is (`Grip.windings`) [rad]"""
     first: Array
     """Steps in a row at whose end the first arm has had it wrapped"""
     second: Array
@@ -88,7 +90,8 @@ def follow(situation: Situation, state: State) -> Array:
     base_x, base_z = held.base[:, 0], held.base[:, 2]
     carried = held.touching.any(axis=1) & (held.tilt <= UPRIGHT) & ~begins
     return np.stack(Handling(
-        reach=_reach(held.gaps, arm_elements(s.body)), span=span, first=first, second=second, slack=slack,
+        reach=_reach(held.gaps, arm_elements(s.body)), span=span,
+        winding=held.windings.max(axis=1), first=first, second=second, slack=slack,
         grabbed=grabbed.astype(np.float64), base_x=base_x, base_z=base_z, tilt=held.tilt,
         moved_x=old.moved_x + np.where(carried, base_x - old.base_x, 0.0),
         moved_z=old.moved_z + np.where(carried, base_z - old.base_z, 0.0),
@@ -188,6 +191,11 @@ def move(situation: Situation) -> Array:
 def wrap(situation: Situation) -> Array:
     """Return by how much the angle around the object has grown, up to 200 degrees [rad], (B,)."""
     return np.minimum(now(situation).span, WRAPPED) - np.minimum(before(situation).span, WRAPPED)
+
+
+def wind(situation: Situation) -> Array:
+    """Return by how much the angle that an arm winds around the object has grown, up to 200 degrees [rad], (B,)."""
+    return np.minimum(now(situation).winding, WRAPPED) - np.minimum(before(situation).winding, WRAPPED)
 
 
 def grab(situation: Situation) -> Array:

@@ -51,6 +51,7 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | term | weight | formula, a control step |
 |---|---|---|
 | approach | 10 | by how much the gap between an arm's inner half and the object has shrunk, in body lengths |
+| wind | 5 | by how much the angle that an arm winds around the object has grown, up to 200 degrees, in radians |
 | wrap | 5 | by how much the angle around the object has grown, up to 200 degrees, in radians |
 | success | 10 | 1 where the object is grabbed |
 | early | 10 | at success, the part of the episode that is left |
@@ -61,11 +62,12 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 
 An arm's inner half is the one next to the head. The angle is that which the touching elements of an arm, at
 least five, span around the object's axis, from the first to the last of them, followed along the arm; of two
-arms the larger. Touching are surfaces with less than 2 mm between them. The object is grabbed when an arm spans
-200 degrees or more at the ends of all control steps in 0.5 s. Approach and wrap are differences of what is so
-far, so letting go and taking hold again earns nothing. The info also has ``distance``, the length of the
-object's circumference that is wrapped [m]; ``is_success``; and ``termination_reason``: empty, ``success``,
-``time_limit``, ``toppled``, ``fallen`` or ``diverged``.
+arms the larger. Touching are surfaces with less than 2 mm between them. What an arm winds around the object is
+that angle of all its elements, each part of it times how near they are: 1 where they touch, falling to 0 at a gap
+of 0.15 m. The object is grabbed when an arm spans 200 degrees or more at the ends of all control steps in 0.5 s.
+Approach, wind and wrap are differences of what is so far, so letting go and taking hold again earns nothing. The
+info also has ``distance``, the length of the object's circumference that is wrapped [m]; ``is_success``; and
+``termination_reason``: empty, ``success``, ``time_limit``, ``toppled``, ``fallen`` or ``diverged``.
 
 Starting state
 --------------
@@ -102,6 +104,7 @@ from .handling import (
     handling_task,
     now,
     see_object,
+    wind,
     wrap,
 )
 from .octopus_script import fetch
@@ -135,11 +138,11 @@ TASK = handling_task(
     starts={name: OBJECT_STARTS[name] for name in ("default", "arc", "anywhere")} | {"near": with_object_nearby},
     see_goal=see_object,
     reward_terms={
-        "approach": approach, "wrap": wrap, "success": success, "early": early, "effort": effort, "toppled": toppled,
-        "fallen": fallen,
+        "approach": approach, "wind": wind, "wrap": wrap, "success": success, "early": early, "effort": effort,
+        "toppled": toppled, "fallen": fallen,
     },
     reward_weights={
-        "approach": 10.0, "wrap": 5.0, "success": 10.0, "early": 10.0, "effort": 0.1, "toppled": -10.0,
+        "approach": 10.0, "wind": 5.0, "wrap": 5.0, "success": 10.0, "early": 10.0, "effort": 0.1, "toppled": -10.0,
         "fallen": -10.0, "diverged": -10.0,
     },
     distance=distance,

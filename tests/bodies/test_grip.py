@@ -84,6 +84,16 @@ def test_an_arm_on_a_circle(body, arm, count, gap):
     np.testing.assert_array_equal(np.flatnonzero(found.touching[0]), np.arange(begin, begin + count))
 
 
+@pytest.mark.parametrize(("gap", "near"), [(-0.004, 1.0), (0.03, 0.8), (0.12, 0.2), (0.16, 0.0)])
+def test_what_an_arm_on_a_circle_winds(body, gap, near):
+    state = apart(body)
+    turn = lay(body, state, 0, (73, 103), gap)
+    windings = grip(body, state).windings[0]
+    # the first and the last of them may also be near with the straight parts that lead there
+    assert near * 29 * turn - 1e-9 <= windings[1] <= near * 31 * turn + 0.2
+    assert windings[0] == 0.0
+
+
 def test_more_than_a_full_turn(body):
     state = apart(body)
     state.radius[:] = 0.01
