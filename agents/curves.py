@@ -43,7 +43,7 @@ def plot_runs(runs: list[Path], title: str) -> Figure:
         grid = np.linspace(max(t["steps"][0] for t in tables), min(t["steps"][-1] for t in tables), 200)
         curves = np.stack([_interpolate(grid, table, column) for table in tables])
         ax.fill_between(grid, curves.min(0), curves.max(0), alpha=0.25, lw=0, label="lowest to highest")
-        ax.plot(grid, curves.mean(0), label=f"mean of {len(tables)} runs")
+        ax.plot(grid, curves.mean(0), label="mean" if len(tables) > 1 else "one run")
     axes[0].legend(fontsize=8)
     return figure
 

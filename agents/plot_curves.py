@@ -36,7 +36,7 @@ def main() -> None:
         if len(read_table(run / METRICS).get("steps", [])) < 2:
             raise BadInputError(f"The run {run} has no curve yet: {run / METRICS} has less than two rows.")
     make_folder(arguments.out.parent)
-    figure = curves.plot_runs(arguments.runs, f"{arguments.env}, {len(arguments.runs)} runs")
+    figure = curves.plot_runs(arguments.runs, f"{arguments.env}, runs: {len(arguments.runs)}")
     write_atomically(arguments.out, lambda path: curves.save(figure, path))
     print(f"Wrote {arguments.out}")
 
