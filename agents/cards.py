@@ -75,7 +75,7 @@ def write_pretrained(folder: Path, name: str, policy: TrainedPolicy, card: dict[
         raise BadInputError(f"{folder} would take {size / 1e6:.1f} MB; at most {LARGEST / 1e6:g} MB are allowed.")
     temporary.replace(paths[0])
     paths[1].unlink(missing_ok=True)
-    if policy.normalization is not None:
+    if policy.normalization is not None and policy.normalization.norm_obs:
         _write_statistics(paths[1], policy.normalization)
     text = yaml.safe_dump(card, sort_keys=False, width=120)
     write_atomically(paths[2], lambda path: path.write_text(text))
@@ -108,13 +108,16 @@ def _write_statistics(path: Path, normalization: Any) -> None:
 def command_of(config: dict[str, Any]) -> str:
     """Return the command that makes a run like the one with this ``config.yml``."""
     values = config["hyperparameters"]
-    shipped = load(config["algo"], config["env"])
+    file = config.get("config")
+    shipped = load(config["algo"], config["env"], config=file and Path(file))
     words = ["python", "-m", "agents.train", "--env", config["env"], "--algo", config["algo"]]
     words += ["--seed", str(config["seed"])]
     if config.get("steps") not in (None, shipped["n_timesteps"]):
         words += ["--steps", str(config["steps"])]
     if config.get("minutes") is not None:
         words += ["--minutes", f"{config['minutes']:g}"]
+    if file is not None:
+        words += ["--config", file]
     if config.get("start_from") is not None:
         start = config["start_from"]
         # the folder that a run was in is of no use elsewhere: the id and the name of that run are

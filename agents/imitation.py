@@ -12,32 +12,38 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from agents.rhythm import Rhythms
 from agents.vec_env import BatchVecEnv
 
-ROUNDS = 8
+ROUNDS = 40
 """Rounds in which steps are taken and the network is fitted to all of them so far"""
-EPOCHS = 10
+EPOCHS = 4
 """Passes over the data in each round"""
-LAST_EPOCHS = 40
+LAST_EPOCHS = 20
 """Passes over all of them in the end"""
 BATCH_SIZE = 512
+SCRIPTED = 4
+"""In every so many-th environment the script acts, so that the network sees where a script that does well gets"""
 CRITIC = ("value_net", "mlp_extractor.value_net")
 """Parameters that a policy does not need to act"""
 CRITIC_UPDATES = 6
 """First updates after imitation that leave the actor as it is"""
 LEARNING_RATES = (1e-3, 1e-4)
 """Of Adam, at the beginning of each round's passes and at their end"""
-SATURATED = 1.5
-"""What is learned where the script asks for all that a muscle can do: so much that exploring about it still does it"""
 
 
 def imitate(
-    model: Any, adapter: BatchVecEnv, *, steps: int, show: Callable[[float, dict[str, float]], None]
+    model: Any,
+    adapter: BatchVecEnv,
+    *,
+    steps: int,
+    show: Callable[[float, dict[str, float]], None],
+    after_round: Callable[[float], bool],
 ) -> None:
     """Fit the mean actions of a model to those of the scripted policy of its task.
 
-    In the first round the script acts, later it does in every other environment and the model in the rest. The model's
-    statistics of observations, if it normalises them, become those of all that has been seen.
+    In the first round the script acts, later it does in some environments and the model in the others. The statistics
+    by which observations are normalised, if they are, become those of all that has been seen.
 
     Parameters
     ----------
@@ -48,34 +54,47 @@ def imitate(
     steps
         Environment steps to take, over all of them.
     show
-        Called with the part that is done and, once there is one, the mean square difference from the script.
+        Called often, with the part that is done and, once there is one, the mean square difference from the script.
+    after_round
+        Called with the part that is done; imitation ends where it returns False.
     """
     optimizer = torch.optim.Adam(model.policy.parameters())
     per_round = max(1, round(steps / (ROUNDS * adapter.num_envs)))
     seen, wanted = [], []
+    numbers: dict[str, float] = {}
     adapter.seed(model.seed)
     observations = adapter.reset()
     for number in range(ROUNDS):
         for step in range(per_round):
-            seen.append(observations)
             scripted = np.clip(adapter.batch.task.scripted_policy(adapter.batch), -1.0, 1.0).astype(np.float32)
-            wanted.append(np.where(np.abs(scripted) < 1.0, scripted, SATURATED * scripted))
+            seen.append(observations)
+            wanted.append(scripted)
             adapter.step_async(_played(model, observations, scripted) if number else scripted)
             observations, *_ = adapter.step_wait()
-            show((number + step / per_round) / ROUNDS, {})
-        if (statistics := model.get_vec_normalize_env()) is not None:
-            statistics.obs_rms.update(np.concatenate(seen[-per_round:]))
+            show((number + step / per_round) / ROUNDS, numbers)
+        _learn_scale(model, np.concatenate(seen), new=np.concatenate(seen[-per_round:]))
         data = [torch.as_tensor(each) for each in (_normalized(model, np.concatenate(seen)), np.concatenate(wanted))]
         for rate in np.geomspace(*LEARNING_RATES, EPOCHS if number < ROUNDS - 1 else LAST_EPOCHS):
             optimizer.param_groups[0]["lr"] = rate
-            difference = _fit(model.policy, optimizer, *data)
-            show((number + 1.0) / ROUNDS, {"mean square difference": difference})
+            numbers = {"mean square difference": _fit(model.policy, optimizer, *data)}
+            show((number + 1.0) / ROUNDS, numbers)
+        if not after_round((number + 1.0) / ROUNDS):
+            return
 
 
 def _played(model: Any, observations: np.ndarray, scripted: np.ndarray) -> np.ndarray:
-    """Return what is done: by the script, and in every other environment by the model as it will explore."""
-    own, _ = model.predict(_normalized(model, observations))
-    return np.where(np.arange(len(own))[:, None] % 2 == 1, own, scripted)
+    """Return what is done: by the script in some environments, by the model as it is in the others."""
+    own, _ = model.predict(_normalized(model, observations), deterministic=True)
+    return np.where(np.arange(len(own))[:, None] % SCRIPTED == 0, scripted, own)
+
+
+def _learn_scale(model: Any, seen: np.ndarray, new: np.ndarray) -> None:
+    """Take the scale of what is seen from all observations so far, or add the new ones to the statistics there are."""
+    statistics, extractor = model.get_vec_normalize_env(), model.policy.features_extractor
+    if isinstance(extractor, Rhythms):
+        extractor.fit(torch.as_tensor(seen))
+    elif statistics is not None and statistics.norm_obs:
+        statistics.obs_rms.update(new)
 
 
 @contextmanager
@@ -102,9 +121,15 @@ def _fit(policy: Any, optimizer: torch.optim.Optimizer, observations: Tensor, ac
     total = 0.0
     for rows in torch.randperm(len(observations)).split(BATCH_SIZE):
         mean = policy.get_distribution(observations[rows]).distribution.mean
-        loss = torch.mean((mean - actions[rows]) ** 2)
+        loss = _difference(mean, actions[rows])
         optimizer.zero_grad()
         loss.backward()
         optimizer.step()
         total += float(loss.detach()) * len(rows)
     return total / len(observations)
+
+
+def _difference(mean: Tensor, actions: Tensor) -> Tensor:
+    """Return the mean square difference; more than a muscle can do is as good as all that it can."""
+    is_more = (actions.abs() >= 1.0) & (mean * actions > 1.0)
+    return torch.mean(torch.where(is_more, 0.0, mean - actions) ** 2)

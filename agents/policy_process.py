@@ -36,14 +36,15 @@ class PolicyProcess:
     Parameters
     ----------
     path
-        A Python file, see `agents.policy_file.FilePolicy`; the folder of a run; or the ``model.zip`` in it.
+        A Python file, see `agents.policy_file.FilePolicy`; the folder of a run; the ``model.zip`` in it; or the zip of
+        a pretrained policy, beside its card.
     loading_time, acting_time
         How long the policy may take [s].
     """
 
     def __init__(self, path: Path, *, loading_time: float = LOADING_TIME, acting_time: float = ACTING_TIME):
         if not path.exists():
-            raise BadInputError(f"There is no policy {path}; give a Python file, a run's folder or its model.zip.")
+            raise BadInputError(f"There is no policy {path}; give a Python file, a run's folder or its zip.")
         context = multiprocessing.get_context("spawn")
         self._loading_time, self._acting_time = loading_time, acting_time
         self._pipe, far_end = context.Pipe()
@@ -120,8 +121,11 @@ def _load(path: Path) -> Any:
     if path.suffix == ".py":
         return FilePolicy(path)
     # a second and more to import, which files do not need
+    from agents.cards import load_pretrained
     from agents.policies import load_run
 
+    if path.suffix == ".zip" and path.with_suffix(".yml").exists():
+        return load_pretrained(path.stem, path.parent)[0]
     return load_run(path.parent if path.suffix == ".zip" else path)[0]
 
 

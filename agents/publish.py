@@ -55,7 +55,7 @@ def main() -> None:
         env_kwargs=config["hyperparameters"].get("env_kwargs"),
     )
     print_table(f"{arguments.name}, {arguments.episodes} episodes from seed {arguments.seed}", result)
-    card = card_of(arguments.name, arguments.run, config, policy.model.num_timesteps, result)
+    card = card_of(arguments.name, arguments.run, config, policy.model.num_timesteps + config.get("imitate", 0), result)
     for path in write_pretrained(arguments.out, arguments.name, policy, card):
         print(f"wrote {path} ({path.stat().st_size / 1000:.0f} kB)")
 
@@ -63,9 +63,10 @@ def main() -> None:
 def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "Evaluation") -> dict[str, Any]:
     """Return what the card says."""
     from agents.cards import command_of
-    from agents.run_files import BEST, METRICS, read_table
+    from agents.run_files import BEST, EVALUATIONS, METRICS, read_table
 
-    seconds = read_table((run.parent if run.name == BEST else run) / METRICS).get("seconds", [0.0])
+    folder = run.parent if run.name == BEST else run
+    seconds = [read_table(folder / name).get("seconds", [0.0])[-1] for name in (METRICS, EVALUATIONS)]
     summary = result.summary()
     scores = ("episodes", "first_seed", "success_rate", "distance_mean", "distance_ci95", "return_mean", "return_ci95")
     return {
@@ -77,7 +78,7 @@ def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "E
         "seed": config["seed"],
         "command": command_of(config),
         "steps": int(steps),
-        "wall_time_minutes": round(float(seconds[-1]) / 60.0, 1),
+        "wall_time_minutes": round(float(max(seconds)) / 60.0, 1),
         "score": {key: round(value, 4) if isinstance(value := summary[key], float) else value for key in scores},
         "scored_with": f"python -m agents.evaluate --pretrained {name} --episodes {summary['episodes']} "
         f"--seed {summary['first_seed']}",

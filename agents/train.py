@@ -42,7 +42,7 @@ class TrainArguments:
     easier task of the same animal."""
     imitate: int = 0
     """Environment steps in which the networks first learn to do as the task's scripted policy does; not counted in
-    `steps`."""
+    `steps`, which may be 0, but in the minutes."""
     threads: int = 2
     """Threads for the physics; results do not depend on them."""
     evaluations: int = 10
@@ -115,6 +115,7 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     config = {
         **{key: value for key, value in dataclasses.asdict(arguments).items() if key not in _NOT_IN_CONFIG},
         "start_from": _start(arguments.start_from),
+        "config": arguments.config and str(arguments.config),
         "steps": int(values["n_timesteps"]) if arguments.steps is arguments.minutes is None else arguments.steps,
         "hyperparameters": values,
         "versions": {"python": platform.python_version(), **_versions()},
@@ -138,7 +139,7 @@ def _start(start: str | None) -> str | None:
     return str(Path(start).resolve())
 
 
-_NOT_IN_CONFIG = {"set", "config", "n_envs", "out", "folder", "resume"}
+_NOT_IN_CONFIG = {"set", "n_envs", "out", "folder", "resume"}
 
 
 def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
@@ -155,7 +156,7 @@ def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
 
 def _check(config: dict[str, Any]) -> None:
     choose("environment", config["env"], environment_ids())
-    lowest = {"steps": 1, "minutes": 0.0, "imitate": 0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1,
+    lowest = {"steps": 0, "minutes": 0.0, "imitate": 0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1,
               "recordings": 0}  # fmt: skip
     for key, bound in lowest.items():
         if (value := config.get(key)) is not None and value < bound:

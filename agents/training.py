@@ -64,7 +64,7 @@ class Budget:
 
     def fraction(self, steps_done: int, *, seconds_ahead: float = 0.0) -> float:
         """Return how much of the budget is spent, from 0 to 1, or would be in `seconds_ahead`."""
-        by_steps = 0.0 if self.steps is None else steps_done / self.steps
+        by_steps = 0.0 if self.steps is None else steps_done / self.steps if self.steps else 1.0
         by_time = 0.0 if self.minutes is None else (self.seconds + seconds_ahead) / (60.0 * self.minutes)
         return min(1.0, max(by_steps, by_time))
 
@@ -99,6 +99,7 @@ class Training:
         self.metrics = Table(folder / METRICS, size=saved["table_sizes"][0])
         self.evaluations = Table(folder / EVALUATIONS, size=saved["table_sizes"][1])
         self._points_passed = 0
+        self._imitated = saved.get("imitated", 0)
         self._critic_first = CRITIC_UPDATES * self.model.n_steps * self.adapter.num_envs if config.get("imitate") else 0
         self._seconds_before: float = saved["seconds"]
         self._checkpoint_at = 0.0
@@ -174,6 +175,7 @@ class Training:
             "numpy": np.random.get_state(),
             "python": random.getstate(),
             "action_space": self.model.action_space.np_random.bit_generator.state,
+            "imitated": self._imitated,
             "seconds": self.budget.seconds,
             "table_sizes": (self.metrics.size, self.evaluations.size),
         }
@@ -216,11 +218,13 @@ class Training:
         try:
             with ProgressDisplay() as self.display:
                 self._compile()
-                if self.config.get("imitate") and self.model.num_timesteps == 0:
-                    imitate(self.model, self.adapter, steps=self.config["imitate"], show=self.display.update)
                 self.budget = Budget(
                     steps=self.config["steps"], minutes=self.config["minutes"], seconds_before=self._seconds_before
                 )
+                if self._imitated < self.config.get("imitate", 0):
+                    imitate(self.model, self.adapter, steps=self.config["imitate"], show=self.display.update,
+                            after_round=self._after_imitating)  # fmt: skip
+                    self._pass_points(self.spent)
                 finished = self._loop()
                 self._finish()
         finally:
@@ -238,18 +242,24 @@ class Training:
         env.step(np.zeros((1, *env.action_space.shape), np.float32))  # type: ignore[misc]
         env.close()
 
+    def _after_imitating(self, part: float) -> bool:
+        """Evaluate when due, and return whether to go on."""
+        self._imitated = round(part * self.config["imitate"])
+        self._evaluate_when_due(part)
+        return not self._stop
+
     def _loop(self) -> bool:
         iterate = ITERATIONS[type(self.model)]
         callback = self._begin()
         duration = 0.0
-        self._evaluate_when_due()
+        self._evaluate_when_due(self.spent)
         while self.budget.fraction(self.model.num_timesteps, seconds_ahead=duration) < 1.0 and not self._stop:
             started, steps_before = time.monotonic(), self.model.num_timesteps
             with critic_alone(self.model.policy, steps_before < self._critic_first):
                 iterate(self.model, callback, self.budget)
             duration = time.monotonic() - started
             self._measure((self.model.num_timesteps - steps_before) / duration)
-            self._evaluate_when_due()
+            self._evaluate_when_due(self.spent)
             if self.budget.seconds - self._checkpoint_at > 60.0 * self.config["checkpoint_minutes"]:
                 self._checkpoint()
         return not self._stop
@@ -261,7 +271,7 @@ class Training:
         )
         self._checkpoint_at = self.budget.seconds
         if resumed:
-            self._pass_points()
+            self._pass_points(self.spent)
         return callback
 
     def _ask_to_stop(self, number: int, frame: FrameType | None) -> None:
@@ -275,7 +285,7 @@ class Training:
         episodes = self.model.ep_info_buffer
         means = {key: float(safe_mean([e[key] for e in episodes])) for key in ("r", "l", "distance")}
         row = {
-            "steps": self.model.num_timesteps,
+            "steps": self.steps,
             "seconds": self.budget.seconds,
             "steps_per_second": steps_per_second,
             "return": means["r"],
@@ -288,19 +298,27 @@ class Training:
         self.model.logger.dump(self.model.num_timesteps)
         self.metrics.append(row)
         shown = ("steps", "steps_per_second", "return", "distance", "success")
-        fraction = self.budget.fraction(self.model.num_timesteps)
-        self.display.update(fraction, {key.replace("steps_per_second", "steps/s"): row[key] for key in shown})
+        self.display.update(self.spent, {key.replace("steps_per_second", "steps/s"): row[key] for key in shown})
 
-    def _evaluate_when_due(self) -> None:
-        """Evaluate at the start and whenever another equal part of the budget is spent."""
+    @property
+    def steps(self) -> int:
+        """Environment steps taken, those of imitation included."""
+        return self._imitated + self.model.num_timesteps
+
+    @property
+    def spent(self) -> float:
+        """The part of the budget that is spent, which imitation does not count for unless in minutes."""
+        return self.budget.fraction(self.model.num_timesteps)
+
+    def _evaluate_when_due(self, part: float) -> None:
+        """Evaluate at the start and whenever another equal part is done, of the budget or of imitation."""
         points = self.config["evaluations"]
-        if points and self.budget.fraction(self.model.num_timesteps) * points >= self._points_passed:
+        if points and part * points >= self._points_passed:
             self._evaluate()
-            self._pass_points()
+            self._pass_points(part)
 
-    def _pass_points(self) -> None:
-        spent = self.budget.fraction(self.model.num_timesteps)
-        self._points_passed = int(spent * self.config["evaluations"]) + 1
+    def _pass_points(self, part: float) -> None:
+        self._points_passed = int(part * self.config["evaluations"]) + 1
 
     def _evaluate(self) -> None:
         result = evaluate(
@@ -311,9 +329,8 @@ class Training:
             n_threads=self.config["threads"],
             env_kwargs=self.config["hyperparameters"].get("env_kwargs"),
         ).summary()
-        steps = self.model.num_timesteps
         row = {
-            "steps": steps,
+            "steps": self.steps,
             "seconds": self.budget.seconds,
             "return": result["return_mean"],
             "return_ci95": result["return_ci95"],
@@ -328,7 +345,7 @@ class Training:
             self._save_best()
         self.evaluations.append(row)
         self.display.say(
-            f"evaluation at {steps:,} steps: return {row['return']:.3f} ± {row['return_ci95']:.3f}, "
+            f"evaluation at {self.steps:,} steps: return {row['return']:.3f} ± {row['return_ci95']:.3f}, "
             f"distance {row['distance']:.3f} m, success {row['success']:.0%}"
         )
 
@@ -341,7 +358,9 @@ class Training:
 
     def _finish(self) -> None:
         """Save the state for a later ``--resume``, the model for use, the curve and recordings of the best model."""
-        self._checkpoint()
+        # who stops while it imitates begins anew
+        if self._imitated == self.config.get("imitate", 0):
+            self._checkpoint()
         self._save_policy(self.folder)
         figure = curves.plot_run(self.folder)
         write_atomically(self.folder / "learning_curve.png", lambda path: curves.save(figure, path))

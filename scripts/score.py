@@ -17,7 +17,8 @@ class Arguments:
     """
 
     policy: Path
-    """A Python file with a function policy(observation), the folder of a run, or the model.zip in it."""
+    """A Python file with a function policy(observation), the folder of a run, its model.zip, or the zip of a pretrained
+    policy."""
     targets: int = 100
     """Targets on the arc, and again anywhere."""
     target_seed: int = 2020

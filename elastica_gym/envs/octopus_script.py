@@ -44,6 +44,12 @@ BOUT = (3, 5)
 """Near the object, how many strokes it turns at a time, and with the rest after it, in which it looks"""
 NEAR = 0.13
 """Gap between the object and an arm's inner half below which it does so [m]"""
+UNSTROKED = slice(3, None)
+"""Of the activations that bend an arm sideways, those that no stroke plays"""
+BENT = 0.05
+"""Their mean from which on an arm is bent as a whole"""
+LEAST_BEND = 0.1
+"""Activation with which it begins"""
 STILL = (0.1, 0.1)
 """Largest activation and speed of a node at which it lies still [1, m/s]"""
 BEND = ((0.18, 0.345), -0.04, 0.07)
@@ -203,7 +209,7 @@ def _is_in_the_bend(sight: Sight, arm: Index) -> Mask:
     """Return whether an arm has the object where it should begin or go on to bend, (B,)."""
     ahead, right = np.abs(sight.ahead), sight.right
     bent = np.take_along_axis(sight.levels, BENDING + arm[:, None] * N_FUNCTIONS, axis=1)
-    level = bent.mean(axis=1)
+    level = bent[:, UNSTROKED].mean(axis=1)
     (nearest, furthest), left, gap = BEND
     begins = (ahead > nearest) & (ahead < furthest) & (right > left) & (sight.gap < gap)
     most, fastest = STILL
@@ -211,7 +217,7 @@ def _is_in_the_bend(sight: Sight, arm: Index) -> Mask:
     (nearest, furthest), (left, rightmost) = REACH
     goes_on = (ahead > nearest) & (ahead < furthest) & (right > left) & (right < rightmost)
     # bent as a whole, not by a stroke
-    goes_on &= (level > 0.015) & (bent.max(axis=1) - bent.min(axis=1) < 0.02)
+    goes_on &= level > BENT
     goes_on &= (level < EMPTY[0]) | (sight.touched > EMPTY[1])
     return begins | goes_on
 
@@ -249,7 +255,7 @@ def bend(sight: Sight, arm: Index) -> Array:
     """Return the actions that bend an arm more and more, but less where what it holds leans, (B, 42)."""
     columns = BENDING + arm[:, None] * N_FUNCTIONS
     level = np.take_along_axis(sight.levels, columns, axis=1).mean(axis=1)
-    level += np.where(sight.tilt > LEANING, -RAMP, RAMP)
+    level = np.maximum(level + np.where(sight.tilt > LEANING, -RAMP, RAMP), LEAST_BEND)
     actions = np.zeros((len(arm), N_ACTIVATIONS))
     np.put_along_axis(actions, columns, np.minimum(level, 1.0)[:, None], axis=1)
     return actions

@@ -4,8 +4,9 @@ import numpy as np
 import torch
 
 from agents.hyperparameters import algorithm_arguments, load
-from agents.imitation import CRITIC_UPDATES, critic_alone
+from agents.imitation import CRITIC_UPDATES, ROUNDS, _difference, critic_alone
 from agents.policies import load_run
+from agents.run_files import EVALUATIONS, METRICS, read_table
 from agents.vec_env import make_batch_vec_env
 from tests.agents.commands import FORWARD, SMALL_PPO, run
 from tests.agents.test_bad_input import refused
@@ -63,3 +64,21 @@ def test_the_critic_learns_alone_at_first():
 
 def test_only_ppo_imitates():
     assert "only ppo can imitate" in refused("agents.train", "--algo", "sac", "--imitate", "100")
+
+
+def test_no_steps_leave_what_was_imitated(tmp_path):
+    output = run("agents.train", "--steps", 0, "--imitate", 160, "--folder", tmp_path, *SMALL_PPO)
+    evaluations = read_table(tmp_path / EVALUATIONS)
+    # after the first of the rounds, and in the end
+    assert evaluations["steps"].tolist() == [160 / ROUNDS, 160], output
+    assert load_run(tmp_path)[0].model.num_timesteps == 0
+    # and rewards may be learned from later
+    run("agents.train", "--resume", tmp_path, "--steps", 40)
+    assert load_run(tmp_path)[0].model.num_timesteps == 40
+    assert read_table(tmp_path / METRICS)["steps"].tolist() == [200]
+
+
+def test_more_than_a_muscle_can_do_is_no_difference():
+    actions = torch.tensor([[1.0, -1.0, 1.0, 0.5]])
+    assert _difference(torch.tensor([[1.7, -2.0, 1.0, 0.5]]), actions) == 0.0
+    torch.testing.assert_close(_difference(torch.tensor([[-2.0, -1.0, 0.0, 1.5]]), actions), torch.tensor(11.0 / 4.0))

@@ -1,0 +1,76 @@
+"""A policy that feels clocks of given periods, for strokes whose period is not that of the clock that animals feel."""
+
+from typing import Any
+
+import gymnasium
+import torch
+from gymnasium import spaces
+from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
+from torch import Tensor
+
+MOST = 10.0
+"""Deviations from the mean to which what is seen is clipped"""
+LEAST_DEVIATION = 1e-3
+"""Below which a number that is seen counts as constant"""
+
+
+class Rhythms(BaseFeaturesExtractor):
+    """What is seen, each number with mean 0 and deviation 1, and sine and cosine of clocks, (B, d + 2 p).
+
+    Parameters
+    ----------
+    observation_space : spaces.Box
+        Of d numbers, which are not normalised, for the clocks go by one of them.
+    time_left : int
+        Which of them is the part of the episode that is left.
+    duration : float
+        Of episodes [s].
+    periods : sequence of float
+        Of p clocks, which begin with the episode [s].
+    """
+
+    mean: Tensor
+    deviation: Tensor
+    rates: Tensor
+
+    def __init__(self, observation_space: spaces.Box, time_left: int, duration: float, periods: tuple[float, ...]):
+        width = observation_space.shape[0]
+        super().__init__(observation_space, features_dim=width + 2 * len(periods))
+        self.time_left = time_left
+        self.register_buffer("mean", torch.zeros(width))
+        self.register_buffer("deviation", torch.ones(width))
+        self.register_buffer("rates", 2.0 * torch.pi * duration / torch.as_tensor(periods))
+
+    def fit(self, observations: Tensor) -> None:
+        """Take mean and deviation from observations (n, d)."""
+        self.mean.copy_(observations.mean(dim=0))
+        self.deviation.copy_(observations.std(dim=0).clamp(min=LEAST_DEVIATION))
+
+    def forward(self, observations: Tensor) -> Tensor:
+        """Return the features of observations (B, d)."""
+        phases = (1.0 - observations[:, self.time_left, None]) * self.rates
+        scaled = ((observations - self.mean) / self.deviation).clamp(-MOST, MOST)
+        return torch.cat([scaled, phases.sin(), phases.cos()], dim=1)
+
+
+class RhythmicPolicy(ActorCriticPolicy):
+    """Stable-Baselines3's ``MlpPolicy`` that feels further clocks. Imitation fits the scale of what it sees.
+
+    Parameters
+    ----------
+    env_id : str
+        Id of the environment, whose episodes are as long as they are by default.
+    periods : sequence of float
+        Of the clocks [s].
+    """
+
+    def __init__(self, *args: Any, env_id: str, periods: tuple[float, ...], **kwargs: Any):
+        envs: Any = gymnasium.make_vec(env_id, num_envs=1).unwrapped
+        told = {
+            "time_left": envs.observation_names.index("time_left"),
+            "duration": envs.max_episode_steps * envs.control_dt,
+            "periods": periods,
+        }
+        kwargs |= {"features_extractor_class": Rhythms, "features_extractor_kwargs": told}
+        super().__init__(*args, **kwargs)

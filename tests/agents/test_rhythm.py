@@ -1,0 +1,58 @@
+"""A policy that feels the clocks of the strokes it is to learn."""
+
+import numpy as np
+import pytest
+import torch
+from stable_baselines3 import PPO
+
+from agents.hyperparameters import CONFIGS, algorithm_arguments, load
+from agents.rhythm import MOST, Rhythms
+from agents.vec_env import make_batch_vec_env
+
+PERIODS = (0.37, 1.85)
+RETURN = "elastica_gym/OctopusReturn-v0"
+
+
+@pytest.fixture
+def envs():
+    made = make_batch_vec_env(RETURN, n_envs=2)
+    yield made
+    made.close()
+
+
+def rhythms(envs):
+    names, duration = envs.batch.observation_names, envs.batch.max_episode_steps * envs.batch.control_dt
+    return Rhythms(envs.observation_space, time_left=names.index("time_left"), duration=duration, periods=PERIODS)
+
+
+def test_clocks_go_with_the_time_of_the_episode(envs):
+    features, n = rhythms(envs), len(envs.batch.observation_names)
+    observations = envs.reset()
+    for step in range(12):
+        clocks = features(torch.as_tensor(observations))[:, n:].numpy()
+        angle = 2.0 * np.pi * step * envs.batch.control_dt / np.array(PERIODS)
+        np.testing.assert_allclose(clocks, np.tile([*np.sin(angle), *np.cos(angle)], (2, 1)), atol=1e-4)
+        observations, *_ = envs.step(np.zeros((2, 42), np.float32))
+
+
+def test_what_is_seen_is_brought_to_scale(envs):
+    features, n = rhythms(envs), len(envs.batch.observation_names)
+    seen = torch.randn(1000, n) * torch.linspace(0.1, 20.0, n) + torch.linspace(-3.0, 3.0, n)
+    seen[:, 0] = 0.5
+    features.fit(seen)
+    scaled = features(seen)[:, :n]
+    assert scaled.abs().max() <= MOST
+    torch.testing.assert_close(scaled.mean(dim=0), torch.zeros(n), atol=1e-3, rtol=0.0)
+    torch.testing.assert_close(scaled[:, 1:].std(dim=0), torch.ones(n - 1), atol=1e-3, rtol=0.0)
+    assert torch.all(scaled[:, 0] == 0.0)
+
+
+def test_a_saved_model_keeps_scale_and_clocks(envs, tmp_path):
+    values = load("ppo", RETURN, config=CONFIGS / "imitation.yml") | {"n_envs": 2, "n_steps": 8, "batch_size": 16}
+    model = PPO(env=envs, **algorithm_arguments(values))
+    observations = envs.reset()
+    model.policy.features_extractor.fit(torch.randn(100, observations.shape[1]))
+    model.save(tmp_path / "model.zip")
+    wanted, _ = model.predict(observations, deterministic=True)
+    given, _ = PPO.load(tmp_path / "model.zip").predict(observations, deterministic=True)
+    np.testing.assert_array_equal(given, wanted)
