@@ -38,9 +38,14 @@ def load_pretrained(name: str, folder: Path = PRETRAINED) -> tuple[TrainedPolicy
     card
         ``environment``, ``algorithm``, ``seed``, ``command``, ``hyperparameters``, ``score`` and more.
     """
-    card = yaml.safe_load((folder / f"{choose('pretrained policy', name, names(folder))}.yml").read_text())
+    card = read_card(name, folder)
     model = load_model(folder / f"{name}.zip", card["algorithm"])
     return TrainedPolicy(model, read_statistics(folder / f"{name}.npz")), card
+
+
+def read_card(name: str, folder: Path = PRETRAINED) -> dict[str, Any]:
+    """Return what the card of a pretrained policy says."""
+    return yaml.safe_load((folder / f"{choose('pretrained policy', name, names(folder))}.yml").read_text())
 
 
 def read_statistics(path: Path) -> Statistics | None:

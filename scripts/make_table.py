@@ -1,8 +1,9 @@
 """Make the benchmark table: every environment with every kind of policy, each trained for the same time.
 
 ``python scripts/make_table.py`` evaluates zero, random and scripted actions, the gait that CMA-ES finds, PPO over three
-seeds, and on some ids SAC over three seeds, all on the same unseen episodes. Each cell is a JSON file in <out>/cells,
-written when it is done: begun again, the command makes only what is missing. It ends with <out>/table.md and table.png.
+seeds, on some ids SAC over three seeds, and what is in agents/pretrained, all on the same unseen episodes. Each cell is
+a JSON file in <out>/cells, written when it is done: begun again, the command makes only what is missing. It ends with
+<out>/table.md and table.png.
 """
 
 import dataclasses
@@ -19,14 +20,17 @@ import tyro
 from matplotlib.figure import Figure
 from scipy.stats import trim_mean
 
+from agents import cards
 from agents.checkpoints import write_atomically
 from agents.checks import BadInputError, choose, make_folder, run_command
 from agents.run_files import GAIT
 from elastica_gym.envs import IDS
 
 ROOT = Path(__file__).resolve().parents[1]
-UNTRAINED = ("zero", "random", "scripted")
-LABELS = {"zero": "zero", "random": "random", "scripted": "scripted", "cma": "CMA-ES", "ppo": "PPO", "sac": "SAC"}
+UNTRAINED = ("zero", "random", "scripted", "pretrained")
+"""Policies that take no training here"""
+LABELS = {"zero": "zero", "random": "random", "scripted": "scripted", "cma": "CMA-ES", "ppo": "PPO", "sac": "SAC",
+          "pretrained": "pretrained"}  # fmt: skip
 """Policies in the order of the table"""
 METRICS = {"returns": "return", "distances": "distance [m]"}
 RESAMPLES = 2000
@@ -43,7 +47,7 @@ class Arguments:
     off_policy: tuple[str, ...] = ("SnakeForward-v0", "SnakeReach-v0", "OctopusReach-v0")
     """Environments on which SAC is trained as well."""
     only: tuple[str, ...] = ()
-    """Environments and policies (zero, random, scripted, cma, ppo, sac) to keep to; by default all."""
+    """Environments and policies (zero, random, scripted, cma, ppo, sac, pretrained) to keep to; by default all."""
     episodes: int = 100
     """Episodes of each evaluation."""
     evaluation_seed: int = 2_000_000
@@ -81,15 +85,21 @@ def cells_of(arguments: Arguments) -> list[Cell]:
         choose("environment or policy" if name in arguments.only else "environment", name.rpartition("/")[2],
                (*envs, *LABELS) if name in arguments.only else envs)  # fmt: skip
     wanted = {name.rpartition("/")[2] for name in arguments.only}
+    is_there = {"sac": {name.rpartition("/")[2] for name in arguments.off_policy}, "pretrained": set(pretrained())}
     policies = [policy for policy in LABELS if policy in wanted or not wanted & set(LABELS)]
     return [
         Cell(env, policy, seed)
         for policy in policies
         for env in envs
         if env in wanted or not wanted & set(envs)
-        if policy != "sac" or any(env == name.rpartition("/")[2] for name in arguments.off_policy)
+        if env in is_there.get(policy, envs)
         for seed in range(arguments.seeds if policy in ("ppo", "sac") else 1)
     ]
+
+
+def pretrained() -> dict[str, str]:
+    """Return the name of the pretrained policy of each environment that has one."""
+    return {cards.read_card(name)["environment"].rpartition("/")[2]: name for name in cards.names()}
 
 
 def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
@@ -101,7 +111,9 @@ def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
     folder = cells / cell.name
     seconds = 0.0 if cell.policy in UNTRAINED else train(cell, arguments, folder)
     policy: Policy
-    if cell.policy in UNTRAINED:
+    if cell.policy == "pretrained":
+        policy, _ = cards.load_pretrained(pretrained()[cell.env])
+    elif cell.policy in UNTRAINED:
         policy = baseline(cell.policy)
     elif cell.policy == "cma":
         policy, _ = load_gait(folder / GAIT)

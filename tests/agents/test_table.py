@@ -55,6 +55,8 @@ def test_cells():
         kinds = [cell.policy for cell in cells if cell.env_id == env_id]
         assert kinds[:3] == ["zero", "random", "scripted"] and kinds.count("cma") == 1 and kinds.count("ppo") == 3
     assert len({cell.env for cell in cells if cell.policy == "sac"}) == 3
+    shipped = {cell.env for cell in cells if cell.policy == "pretrained"}
+    assert shipped == set(make_table.pretrained()) >= {"SnakeForward-v0", "OctopusCrawl-v0"}
     few = make_table.cells_of(make_table.Arguments(only=("elastica_gym/SnakeReach-v0", "sac", "zero"), seeds=2))
     assert [cell.name for cell in few] == ["SnakeReach-v0-zero-0", "SnakeReach-v0-sac-0", "SnakeReach-v0-sac-1"]
 
