@@ -55,7 +55,7 @@ def main() -> None:
         env_kwargs=config["hyperparameters"].get("env_kwargs"),
     )
     print_table(f"{arguments.name}, {arguments.episodes} episodes from seed {arguments.seed}", result)
-    card = card_of(arguments.name, arguments.run, config, policy.model.num_timesteps + config.get("imitate", 0), result)
+    card = card_of(arguments.name, arguments.run, config, policy.model.num_timesteps, result)
     for path in write_pretrained(arguments.out, arguments.name, policy, card):
         print(f"wrote {path} ({path.stat().st_size / 1000:.0f} kB)")
 
