@@ -188,7 +188,7 @@ def test_gaps_are_those_that_the_animal_feels(body):
     axis = rng.normal(size=(n, 3))
     state.body_Q[:, 0, 2] = axis / np.linalg.norm(axis, axis=1, keepdims=True)
     pose = make_pose(n, 1)
-    feel(body.model, state, body.senses, pose, np.zeros((n, len(body.readings()))))
+    feel(body.model, state, body.senses, pose, np.zeros((n, len(body.readings()))), np.arange(n))
     found = grip(body, state)
     np.testing.assert_allclose(found.gaps.min(axis=1), pose.gaps[:, 0], atol=1e-14)
     np.testing.assert_array_equal(found.head_gap, found.gaps[:, 50:70].min(axis=1))

@@ -145,7 +145,7 @@ def test_nothing_goes_through_anything(body, scene, seed):
     for _ in range(6):
         # what strikes at 5 m/s goes 8 mm between two looks
         for _ in play(body, state, control, np.sign(rng.uniform(-1.0, 1.0, 42)), 0.3, parts=31):
-            feel(body.model, state, body.senses, pose, readings)
+            feel(body.model, state, body.senses, pose, readings, np.arange(1))
             assert pose.sound[0] == 1
             assert pose.gaps[0, 0] > -5e-3
             assert ground_clearance(body, state) > -5e-3
