@@ -12,7 +12,7 @@ from ..cosserat.kernels.contact import overlap
 from ..cosserat.kernels.vectors import column, plus, times, to_lab, vector
 from ..cosserat.model import Array, Index
 from ..cosserat.surroundings import Cylinder
-from ..muscles import N_ACTIVATIONS, Muscles, couple_matrix
+from ..muscles import N_ACTIVATIONS, Muscles, activation_names, couple_matrix
 from .mirror import Mirror
 
 
@@ -108,7 +108,7 @@ class Body:
             layout += [(f"object/{b}/velocity/{axis}", -20.0, 20.0) for axis in axes]
             layout += [(f"object/{b}/spin/{axis}", -50.0, 50.0) for axis in axes]
             layout += [(f"object/{b}/gap", -1.0, 4.0)]
-        return layout
+        return layout + [(f"activation/{name}", -1.0, 1.0) for name in activation_names(self.arms)]
 
 
 def couples_of(muscles: Muscles, rod: Rod, model: Model) -> Array:
@@ -260,8 +260,8 @@ def _locate(model, state, senses, i, pose):
 
 
 @inline
-def _read(model, state, senses, i, pose, row):
-    """Write the readings of environment i, whose animal has been located."""
+def _read(model, state, levels, senses, i, pose, row):
+    """Write the readings of environment i, whose animal has been located, and return how many there are."""
     n_nodes, n_joints, n_skin = senses.nodes.size, senses.joints.size, senses.skin.size - 1
     inv_length, at = 1.0 / senses.length, 0
     hx, hz, centre = pose.heading[i, 0], pose.heading[i, 1], vector(pose.centre[i])
@@ -288,13 +288,17 @@ def _read(model, state, senses, i, pose, row):
     for b in range(bodies.mass.size):
         _feel_object(model, state, i, b, pose, row, at, inv_length)
         at += 13
+    for a in range(levels.shape[1]):
+        row[at + a] = levels[i, a]
+    return at + levels.shape[1]
 
 
 @entry
-def feel(model, state, senses, pose, readings, envs):
-    """Compute the pose and the readings (B, R) of some environments (E,), in the frame of their headings.
+def feel(model, state, levels, senses, pose, low, high, readings, envs):
+    """Compute the pose and the readings (B, R or more) of some environments (E,), in the frame of their headings.
 
-    Where the simulation has diverged, pose and readings stay as they were.
+    Readings are clipped to their least and largest values (R or more,). Where the simulation has diverged, pose and
+    readings stay as they were.
 
     Readings, with the heading's forward, up and right axes: positions of nodes from the centre of
     mass in body lengths, their velocities in body lengths a second, curvature and twist in
@@ -302,12 +306,14 @@ def feel(model, state, senses, pose, readings, envs):
     carries each patch of skin, over the weight of an equal share of the body. Where there are objects, the
     force with which they touch each patch, likewise; and of each its centre from the head in body lengths,
     axis, velocity in body lengths a second, angular velocity in rad/s, and the gap to the animal's surface
-    in body lengths. In a loop over environments rather than in NumPy, whose sums may round differently with
-    the size of the batch.
+    in body lengths. Last, the activations that the muscles have reached, ``levels`` (B, 42). In a loop over
+    environments rather than in NumPy, whose sums may round differently with the size of the batch.
     """
     for e in range(envs.size):
         i = envs[e]
         pose.sound[i] = 1 if _is_sound(model, state, senses, i) else 0
         if pose.sound[i] == 1:
             _locate(model, state, senses, i, pose)
-            _read(model, state, senses, i, pose, readings[i])
+            row = readings[i]
+            for at in range(_read(model, state, levels, senses, i, pose, row)):
+                row[at] = low[at] if row[at] < low[at] else high[at] if row[at] > high[at] else row[at]

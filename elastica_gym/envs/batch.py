@@ -1,5 +1,6 @@
 """The batched environment: all logic, over a leading environment axis."""
 
+import functools
 from collections.abc import Sequence
 from copy import deepcopy
 from typing import TYPE_CHECKING, Any
@@ -17,7 +18,7 @@ from ..cosserat import advance, advance_together, at_rest
 from ..cosserat.model import Array, Index
 from ..cosserat.rod import require_positive, require_stable
 from ..cosserat.threads import available_cpus
-from ..muscles import N_ACTIVATIONS, activation_names
+from ..muscles import N_ACTIVATIONS
 from .task import Mask, Situation, Task
 
 if TYPE_CHECKING:
@@ -127,7 +128,6 @@ class BatchEnv(VectorEnv):
 
     def _make_spaces(self) -> None:
         layout = self.body.readings()
-        layout += [(f"activation/{name}", -1.0, 1.0) for name in activation_names(self.body.arms)]
         layout += [("clock/sine", -1.0, 1.0), ("clock/cosine", -1.0, 1.0), ("time_left", 0.0, 1.0)]
         layout += [(name, *bounds) for name, bounds in zip(self.task.goal_names, self.task.goal_bounds, strict=True)]
         self.observation_names = tuple(name for name, _, _ in layout)
@@ -147,7 +147,6 @@ class BatchEnv(VectorEnv):
         self.elapsed = np.zeros(n, dtype=np.int64)
         self.activations = np.zeros((n, N_ACTIVATIONS))
         self.levels = np.zeros((n, N_ACTIVATIONS))
-        self._readings = np.zeros((n, len(self.body.readings())))
         self._observations = np.zeros((n, len(self.observation_names)), dtype=np.float32)
         self._distance = np.zeros(n)
         self._ended = np.zeros(n, dtype=bool)
@@ -218,7 +217,7 @@ class BatchEnv(VectorEnv):
         rewards, info = self._judge(now, sound)
         ends = {name: failed(now) for name, failed in self.task.failures.items()}
         ends |= {"success": info["is_success"] & self.task.ends_on_success, "diverged": ~sound}
-        terminated = np.logical_or.reduce(list(ends.values()))
+        terminated = functools.reduce(np.logical_or, ends.values())
         truncated = ~terminated & (self.elapsed >= self.max_episode_steps)
         info["termination_reason"] = _reasons({"time_limit": truncated, **ends})
         self._observe(now, sound)
@@ -289,20 +288,21 @@ class BatchEnv(VectorEnv):
             old[...] = new
         self._progress_before[:] = self.progress
         activate(self.body.couples, self.activations, self.control.couple)
-        advance_together(self.body.model, self.state, self.control, self.num_envs, self.sim_dt, self.n_substeps,
-                         self.n_threads, self._feel)  # fmt: skip
         # the physics does the same to couples, in n_substeps parts
         tau = self.body.muscles.activation_time
         self.levels += (self.activations - self.levels) * (1.0 - np.exp(-self.control_dt / tau))
         self.elapsed += 1
+        advance_together(self.body.model, self.state, self.control, self.num_envs, self.sim_dt, self.n_substeps,
+                         self.n_threads, self._feel)  # fmt: skip
 
     def _feel(self, envs: Index) -> None:
-        """Feel where some animals are; of those that have diverged, the pose stays the last sound one."""
-        feel(self.body.model, self.state, self.body.senses, self.pose, self._readings, envs)
+        """Feel where some animals are; of those that have diverged, what was felt last stays."""
+        feel(self.body.model, self.state, self.levels, self.body.senses, self.pose, self._low, self._high,
+             self._observations, envs)  # fmt: skip
 
-    def _follow(self, now: Situation, where: Mask | Index) -> None:
+    def _follow(self, now: Situation, where: Mask) -> None:
         """Follow the episodes of some environments."""
-        self.progress[where] = self.task.follow(now, self.state)[where]
+        np.copyto(self.progress, self.task.follow(now, self.state), where=where[:, None])
 
     @property
     def observations(self) -> Observations:
@@ -329,13 +329,14 @@ class BatchEnv(VectorEnv):
         info["is_success"] = sound & self.task.succeeds(now)
         return rewards, info
 
-    def _observe(self, now: Situation, where: Mask | Index) -> None:
-        """Write the observations of some environments; the others keep their last ones."""
+    def _observe(self, now: Situation, where: Mask) -> None:
+        """Write what some environments observe beside what the animals feel; the others keep what they observed last."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
         columns = np.concatenate(
-            [self._readings, self.levels, np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None],
-             self.task.see_goal(now)], axis=1, dtype=np.float32)  # fmt: skip
-        self._observations[where] = columns[where].clip(self._low, self._high)
+            [np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None], self.task.see_goal(now)],
+            axis=1, dtype=np.float32)  # fmt: skip
+        n = columns.shape[1]
+        columns.clip(self._low[-n:], self._high[-n:], out=self._observations[:, -n:], where=where[:, None])
 
     # episodes
 
@@ -375,10 +376,10 @@ class BatchEnv(VectorEnv):
         for i in begun.tolist():
             self.goal[i] = self.task.draw_goal(self._generators[i], now.only(slice(i, i + 1)))
         self.progress[begun] = 0.0
-        self._follow(now, begun)
+        self._follow(now, mask)
         self._progress_before[begun] = self.progress[begun]
         self._distance[begun] = self.task.distance(now)[begun]
-        self._observe(now, begun)
+        self._observe(now, mask)
 
     def _blank(self, begun: Mask, rewards: Array, terminated: Mask, truncated: Mask, info: dict[str, Any]) -> None:
         """Clear what a step that only began an episode returns (autoreset NEXT_STEP)."""
@@ -456,8 +457,8 @@ class BatchEnv(VectorEnv):
         return self.task.target(self.goal)
 
 
-_EPISODE_STATE = ("goal", "progress", "_progress_before", "elapsed", "activations", "levels", "_readings",
-                  "_observations", "_distance", "_ended")  # fmt: skip
+_EPISODE_STATE = ("goal", "progress", "_progress_before", "elapsed", "activations", "levels", "_observations",
+                  "_distance", "_ended")  # fmt: skip
 
 
 def _require_count(name: str, value: int, most: int) -> None:

@@ -154,5 +154,4 @@ def effort(situation: Situation) -> Array:
     """Return minus the mean square activation times the duration of the step [s], (B,)."""
     a = situation.activations
     # one after the other: the order of summation must not depend on the size of the batch
-    total = np.cumsum(a * a, axis=1)[:, -1]
-    return -total / a.shape[1] * situation.control_dt
+    return -(a * a).cumsum(axis=1)[:, -1] / a.shape[1] * situation.control_dt
