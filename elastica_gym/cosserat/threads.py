@@ -8,6 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from .kernels.compiler import Bound
 from .kernels.step import advance_queue
 from .model import Control, Index, Model, State
 
@@ -34,23 +35,36 @@ def side_by_side(functions: Sequence[Callable[[], Result]]) -> list[Result]:
     return [first, *(future.result() for future in futures)]
 
 
-def advance_together(
-    model: Model, state: State, control: Control, n_envs: int, dt: float, n_substeps: int, n_threads: int,
-    then: Callable[[Index], None] | None = None,
-) -> None:  # fmt: skip
-    """Advance the first environments, as `advance` does, on several threads.
+class Team:
+    """Threads that advance the environments of a State.
 
-    Each thread then calls ``then``, if there is such, with those that it has advanced: what is to be computed of them.
+    Parameters
+    ----------
+    model : Model
+    state : State
+    control : Control
+    n_threads : int
+        How many there are at most.
     """
-    order, queue = _order(n_envs), np.zeros(1, dtype=np.int64)
 
-    def work() -> None:
-        mine = np.empty_like(order)
-        n_mine = advance_queue(model, state, control, order, queue, dt, n_substeps, mine)
-        if then is not None:
-            then(mine[:n_mine])
+    def __init__(self, model: Model, state: State, control: Control, n_threads: int) -> None:
+        self._advance = Bound(advance_queue, model, state, control)
+        self._n_threads = n_threads
 
-    side_by_side([work] * max(1, min(n_threads, n_envs)))
+    def advance(self, n_envs: int, dt: float, n_substeps: int, then: Callable[[Index], None] | None = None) -> None:
+        """Advance the first environments, as `advance` does.
+
+        Each thread then calls ``then``, if it is given, with those that it has advanced, (k,).
+        """
+        order, queue = _order(n_envs), np.zeros(1, dtype=np.int64)
+
+        def work() -> None:
+            mine = np.empty_like(order)
+            n_mine = self._advance(order, queue, dt, n_substeps, mine)
+            if then is not None:
+                then(mine[:n_mine])
+
+        side_by_side([work] * max(1, min(self._n_threads, n_envs)))
 
 
 @functools.lru_cache(maxsize=8)

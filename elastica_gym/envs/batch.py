@@ -14,10 +14,11 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ..bodies.body import activate, feel, make_pose
-from ..cosserat import advance, advance_together, at_rest
+from ..cosserat import advance, at_rest
+from ..cosserat.kernels.compiler import Bound
 from ..cosserat.model import Array, Index
 from ..cosserat.rod import require_positive, require_stable
-from ..cosserat.threads import available_cpus
+from ..cosserat.threads import Team, available_cpus
 from ..muscles import N_ACTIVATIONS
 from .task import Mask, Situation, Task
 
@@ -148,6 +149,9 @@ class BatchEnv(VectorEnv):
         self.activations = np.zeros((n, N_ACTIVATIONS))
         self.levels = np.zeros((n, N_ACTIVATIONS))
         self._observations = np.zeros((n, len(self.observation_names)), dtype=np.float32)
+        self._team = Team(self.body.model, self.state, self.control, self.n_threads)
+        self._feel = Bound(feel, self.body.model, self.state, self.levels, self.body.senses, self.pose, self._low,
+                           self._high, self._observations)  # fmt: skip
         self._distance = np.zeros(n)
         self._ended = np.zeros(n, dtype=bool)
         self._generators: list[np.random.Generator] | None = None
@@ -292,13 +296,7 @@ class BatchEnv(VectorEnv):
         tau = self.body.muscles.activation_time
         self.levels += (self.activations - self.levels) * (1.0 - np.exp(-self.control_dt / tau))
         self.elapsed += 1
-        advance_together(self.body.model, self.state, self.control, self.num_envs, self.sim_dt, self.n_substeps,
-                         self.n_threads, self._feel)  # fmt: skip
-
-    def _feel(self, envs: Index) -> None:
-        """Feel where some animals are; of those that have diverged, what was felt last stays."""
-        feel(self.body.model, self.state, self.levels, self.body.senses, self.pose, self._low, self._high,
-             self._observations, envs)  # fmt: skip
+        self._team.advance(self.num_envs, self.sim_dt, self.n_substeps, self._feel)
 
     def _follow(self, now: Situation, where: Mask) -> None:
         """Follow the episodes of some environments."""
@@ -428,8 +426,8 @@ class BatchEnv(VectorEnv):
             array[...] = value
         for name, value in saved["physics"].items():
             getattr(self.state, name)[...] = value
-        for name, value in saved["episodes"].items():
-            setattr(self, name, value.copy())
+        for name in _EPISODE_STATE:
+            getattr(self, name)[...] = saved["episodes"][name]
         for pose, values in zip((self.pose, self._before), saved["poses"], strict=True):
             for mine, value in zip(pose, values, strict=True):
                 mine[...] = value
