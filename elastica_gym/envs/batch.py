@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..bodies.body import activate, feel, make_pose
 from ..cosserat import advance, at_rest
 from ..cosserat.kernels.compiler import Bound
-from ..cosserat.model import Array, Index
+from ..cosserat.model import Array
 from ..cosserat.rod import require_positive, require_stable
 from ..cosserat.threads import Team, available_cpus
 from ..muscles import N_ACTIVATIONS
@@ -328,7 +328,7 @@ class BatchEnv(VectorEnv):
         return rewards, info
 
     def _observe(self, now: Situation, where: Mask) -> None:
-        """Write what some environments observe beside what the animals feel; the others keep what they observed last."""
+        """Write what some environments observe beside what is felt; the others keep what they observed last."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
         columns = np.concatenate(
             [np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None], self.task.see_goal(now)],
