@@ -80,7 +80,7 @@ def write_pretrained(folder: Path, name: str, policy: TrainedPolicy, card: dict[
         raise BadInputError(f"{folder} would take {size / 1e6:.1f} MB; at most {LARGEST / 1e6:g} MB are allowed.")
     temporary.replace(paths[0])
     paths[1].unlink(missing_ok=True)
-    if policy.normalization is not None and policy.normalization.norm_obs:
+    if policy.normalization is not None:
         _write_statistics(paths[1], policy.normalization)
     text = yaml.safe_dump(card, sort_keys=False, width=120)
     write_atomically(paths[2], lambda path: path.write_text(text))

@@ -10,7 +10,7 @@ import numpy as np
 import yaml
 
 from agents.checks import BadInputError, choose
-from agents.hyperparameters import algorithm_class
+from agents.hyperparameters import algorithm_class, normalize_arguments
 from elastica_gym.envs.gaits import seed_gait
 
 BASELINES = ("zero", "random", "scripted", "seed_gait")
@@ -153,9 +153,8 @@ def load_run(run: Path) -> tuple[TrainedPolicy, dict[str, Any]]:
     if folder is None:
         raise BadInputError(f"The run {run} has neither a model.zip nor a whole checkpoint.")
     model = load_model(folder / "model.zip", config["algo"])
-    normalization = (
-        load_normalization(folder / "vecnormalize.pkl") if config["hyperparameters"].get("normalize") else None
-    )
+    has_normalization = (normalize_arguments(config["hyperparameters"]) or {"norm_obs": False}).get("norm_obs", True)
+    normalization = load_normalization(folder / "vecnormalize.pkl") if has_normalization else None
     return TrainedPolicy(model, normalization), config
 
 

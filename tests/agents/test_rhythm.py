@@ -6,8 +6,10 @@ import torch
 from stable_baselines3 import PPO
 
 from agents.hyperparameters import CONFIGS, algorithm_arguments, load
+from agents.policies import load_run
 from agents.rhythm import MOST, Rhythms
 from agents.vec_env import make_batch_vec_env
+from tests.agents.commands import SMALL, SMALL_EPISODES, run
 
 PERIODS = (0.37, 1.85)
 RETURN = "elastica_gym/OctopusReturn-v0"
@@ -56,3 +58,14 @@ def test_a_saved_model_keeps_scale_and_clocks(envs, tmp_path):
     wanted, _ = model.predict(observations, deterministic=True)
     given, _ = PPO.load(tmp_path / "model.zip").predict(observations, deterministic=True)
     np.testing.assert_array_equal(given, wanted)
+
+
+def test_runs_begin_with_the_networks_of_another(tmp_path):
+    small = (*SMALL, "--imitate", 80, "--steps", 0, "--config", CONFIGS / "imitation.yml", "--set", SMALL_EPISODES)
+    run("agents.train", "--env", RETURN, "--folder", tmp_path / "first", *small)
+    run("agents.train", "--env", RETURN, "--folder", tmp_path / "second", *small, "--start-from", tmp_path / "first")
+    first, second = (load_run(tmp_path / name)[0] for name in ("first", "second"))
+    assert first.normalization is None
+    start, end = (policy.model.policy.state_dict()["action_net.weight"] for policy in (first, second))
+    # sixteen thousand weights that begin apart stay apart
+    assert torch.nn.functional.cosine_similarity(start.flatten(), end.flatten(), dim=0) > 0.5
