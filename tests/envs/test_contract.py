@@ -75,7 +75,9 @@ def test_integer_seed_counts_up_over_the_batch(env_id, make_vec):
     assert not np.array_equal(together[0], together[1])
 
 
-@pytest.mark.parametrize("seed", [[1, 2], 1.5, "3"])
+@pytest.mark.parametrize(
+    "seed", [[1, 2], 1.5, "3", "345", [1.7, 2.2, 3.9], np.array([1.0, 2.0, 3.0]), ["1", "2", "3"], np.array(3)], ids=str
+)
 def test_seeds_that_cannot_be_are_refused(env_id, make_vec, seed):
     with pytest.raises(ValueError, match="seed must be a whole number or 3 of them"):
         make_vec(env_id, 3).reset(seed=seed)
