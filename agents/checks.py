@@ -5,9 +5,9 @@ import importlib.metadata
 import os
 import re
 import sys
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 EXTRAS = {
     "train": {
@@ -31,6 +31,14 @@ def choose(what: str, name: str, valid: Collection[str]) -> str:
     hint = f"; did you mean {near[0]!r}?" if near else "."
     there = [*near, *sorted(set(valid) - set(near))]
     raise BadInputError(f"Unknown {what} {name!r}{hint} Valid: {', '.join(there)}.")
+
+
+def check_bounds(values: Mapping[str, Any], lowest: Mapping[str, float]) -> None:
+    """Raise ``BadInputError`` for the first of `values` below its `lowest`; those that are None are not looked at."""
+    for key, bound in lowest.items():
+        # so written, a NaN is refused
+        if (value := values.get(key)) is not None and not value >= bound:
+            raise BadInputError(f"{key} must be at least {bound}, got {value}")
 
 
 def missing_extra(extra: str) -> str | None:

@@ -132,8 +132,8 @@ class Training:
     def _new_model(self) -> Any:
         values = self.config["hyperparameters"]
         normalize = normalize_arguments(values)
-        env = self.adapter if normalize is None else VecNormalize(self.adapter, **normalize)
         try:
+            env = self.adapter if normalize is None else VecNormalize(self.adapter, **normalize)
             return algorithm_class(self.config["algo"])(
                 env=env, seed=self.config["seed"], device="cpu", **algorithm_arguments(values)
             )

@@ -44,10 +44,15 @@ def test_unknown_hyperparameter():
     [
         (("--set", "learning_rate=fast"), "learning_rate must be a number or 'lin_<number>', got 'fast'"),
         (("--set", "gamma"), "Expected KEY=VALUE, got 'gamma'"),
+        (("--set", "gamma=["), "The value of gamma is not YAML: '['"),
+        (("--set", "n_timesteps=abc"), "n_timesteps must be a number of environment steps, got 'abc'"),
+        (("--set", "normalize=dict(foo=1)"), "Stable-Baselines3 refuses the hyperparameters: "),
         (("--set", "policy=Mlp"), "Stable-Baselines3 refuses the hyperparameters"),
         (("--set", "env_kwargs={sim_dt: 1.0}"), "The environment refuses its arguments: sim_dt"),
         (("--n-envs", "0"), "The environment refuses its arguments: num_envs"),
         (("--steps", "0"), "steps must be at least 1, got 0"),
+        (("--minutes", "0"), "minutes must be at least 0.001, got 0"),
+        (("--minutes", "nan"), "minutes must be at least 0.001, got nan"),
         (("--seed", "1000000"), "seed must be from 0 to 999999, got 1000000"),
         (("--evaluation-seed", "2000000"), "evaluation_seed must be from 1000000 to 1999999, got 2000000"),
     ],
@@ -56,6 +61,30 @@ def test_values_that_cannot_be(option, message, tmp_path):
     folder = tmp_path / "run"
     assert message in refused("agents.train", "--folder", folder, *option)
     assert not list(folder.glob("*"))  # the same folder can be used again
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (("--n-threads", 0), "n_threads must be at least 1, got 0"),
+        (("--seed", -1), "seed must be at least 0, got -1"),
+        (("--episodes", 0), "episodes must be at least 1, got 0"),
+    ],
+)
+def test_evaluations_that_cannot_be(option, message):
+    assert message in refused("agents.evaluate", "--policy", "zero", "--env", FORWARD, *option)
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (("--env", "elastica_gym/SnakeForwards-v0"), f"'elastica_gym/SnakeForwards-v0'; did you mean '{FORWARD}'"),
+        (("--env", FORWARD, "--n-envs", 0), "n_envs must be at least 1, got 0"),
+        (("--env", FORWARD, "--sim-dt", 1.0), "The environment refuses its arguments: sim_dt"),
+    ],
+)
+def test_divergences_that_cannot_be_counted(option, message):
+    assert message in refused("scripts.count_divergence", *option)
 
 
 def test_unknown_spread():
