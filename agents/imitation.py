@@ -52,7 +52,7 @@ def imitate(
     adapter
         The environments, which are reset and left where they are.
     steps
-        Environment steps to take, over all of them.
+        Environment steps to take, over all of them, up to whole steps of all in each round. The model counts them.
     show
         Called often, with the part that is done and, once there is one, the mean square difference from the script.
     after_round
@@ -71,6 +71,7 @@ def imitate(
             wanted.append(scripted)
             adapter.step_async(_played(model, observations, scripted) if number else scripted)
             observations, *_ = adapter.step_wait()
+            model.num_timesteps += adapter.num_envs
             show((number + step / per_round) / ROUNDS, numbers)
         _learn_scale(model, np.concatenate(seen), new=np.concatenate(seen[-per_round:]))
         data = [torch.as_tensor(each) for each in (_normalized(model, np.concatenate(seen)), np.concatenate(wanted))]

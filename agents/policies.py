@@ -45,8 +45,8 @@ class RandomPolicy:
     """Actions drawn uniformly, afresh at every control step, from a generator per episode."""
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Seed one generator per environment."""
-        self._generators = [np.random.default_rng(seed) for seed in seeds]
+        """Seed one generator per environment, not that which draws its start."""
+        self._generators = [np.random.default_rng([seed, 1]) for seed in seeds]
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
         """Return uniform draws from [-1, 1]."""

@@ -40,7 +40,8 @@ class Rhythms(BaseFeaturesExtractor):
         self.time_left = time_left
         self.register_buffer("mean", torch.zeros(width))
         self.register_buffer("deviation", torch.ones(width))
-        self.register_buffer("rates", 2.0 * torch.pi * duration / torch.as_tensor(periods))
+        # not saved: networks may be taken over to episodes of another duration
+        self.register_buffer("rates", 2.0 * torch.pi * duration / torch.as_tensor(periods), persistent=False)
 
     def fit(self, observations: Tensor) -> None:
         """Take mean and deviation from observations (n, d)."""

@@ -16,6 +16,7 @@ from agents.checks import (
     run_command,
 )
 from agents.run_files import GAIT, SEARCH
+from agents.seeds import VALIDATION
 
 
 @dataclasses.dataclass
@@ -46,7 +47,7 @@ class SearchArguments:
     """Threads for the physics; results do not depend on them."""
     evaluation_episodes: int = 20
     """Episodes on which the best of the candidates, and the best in the end, are chosen."""
-    evaluation_seed: int = 1_000_000
+    evaluation_seed: int = VALIDATION.start
     """Seed of the first of them."""
     out: Path = Path("runs")
     """Folder of all runs."""

@@ -1,7 +1,8 @@
 """Seeds of episodes: training, validation and test have none in common.
 
 Episode i of a batch, and of an evaluation, begins with the generator of seed s + i; further episodes of an environment
-in training go on with the same generator. So what begins in one of these ranges stays in it.
+in training go on with the same generator. So what begins in one of these ranges stays in it. Trainings whose seeds
+differ by less than their number of environments share some of the generators of starts, in other places of the batch.
 """
 
 import numpy as np

@@ -56,11 +56,16 @@ class Budget:
         Wall-clock time of training and its evaluations, or None for no limit.
     seconds_before
         Time [s] spent before this process took over.
+    free_steps
+        Environment steps that the budget does not count, those of imitation.
     """
 
-    def __init__(self, *, steps: int | None, minutes: float | None, seconds_before: float = 0.0):
+    def __init__(
+        self, *, steps: int | None, minutes: float | None, seconds_before: float = 0.0, free_steps: int = 0
+    ):
         self.steps = steps
         self.minutes = minutes
+        self.free_steps = free_steps
         self._started = time.monotonic() - seconds_before
 
     @property
@@ -70,7 +75,8 @@ class Budget:
 
     def fraction(self, steps_done: int, *, seconds_ahead: float = 0.0) -> float:
         """Return how much of the budget is spent, from 0 to 1, or would be in `seconds_ahead`."""
-        by_steps = 0.0 if self.steps is None else steps_done / self.steps if self.steps else 1.0
+        counted = max(0, steps_done - self.free_steps)
+        by_steps = 0.0 if self.steps is None else counted / self.steps if self.steps else 1.0
         by_time = 0.0 if self.minutes is None else (self.seconds + seconds_ahead) / (60.0 * self.minutes)
         return min(1.0, max(by_steps, by_time))
 
@@ -95,7 +101,7 @@ class Training:
         values = config["hyperparameters"]
         self.adapter = self._make_environment(n_envs=values.get("n_envs", 1), n_threads=config["threads"])
         checkpoint = self._find_checkpoint() if resume else None
-        saved: dict[str, Any] = {"seconds": 0.0, "table_sizes": (0, 0)}
+        saved: dict[str, Any] = {"seconds": 0.0, "table_sizes": (0, 0), "imitated": 0}
         self.model = self._new_model() if checkpoint is None else self._load_model(checkpoint)
         if checkpoint is None and config.get("start_from"):
             self._take_over(config["start_from"])
@@ -105,7 +111,7 @@ class Training:
         self.metrics = Table(folder / METRICS, size=saved["table_sizes"][0])
         self.evaluations = Table(folder / EVALUATIONS, size=saved["table_sizes"][1])
         self._points_passed = 0
-        self._imitated = saved.get("imitated", 0)
+        self._imitated: int = saved["imitated"]
         self._critic_first = CRITIC_UPDATES * self.model.n_steps * self.adapter.num_envs if config.get("imitate") else 0
         self._seconds_before: float = saved["seconds"]
         self._checkpoint_at = 0.0
@@ -225,12 +231,11 @@ class Training:
             with ProgressDisplay() as self.display:
                 self._compile()
                 self.budget = Budget(
-                    steps=self.config["steps"], minutes=self.config["minutes"], seconds_before=self._seconds_before
-                )
-                if self._imitated < self.config.get("imitate", 0):
-                    imitate(self.model, self.adapter, steps=self.config["imitate"], show=self.display.update,
-                            after_round=self._after_imitating)  # fmt: skip
-                    self._pass_points(self.spent)
+                    steps=self.config["steps"], minutes=self.config["minutes"], seconds_before=self._seconds_before,
+                    free_steps=self._imitated,
+                )  # fmt: skip
+                if self.config.get("imitate") and not self._imitated:
+                    self._imitate()
                 finished = self._loop()
                 self._finish()
         finally:
@@ -248,11 +253,18 @@ class Training:
         env.step(np.zeros((1, *env.action_space.shape), np.float32))  # type: ignore[misc]
         env.close()
 
-    def _after_imitating(self, part: float) -> bool:
-        """Evaluate when due, and return whether to go on."""
-        self._imitated = round(part * self.config["imitate"])
-        self._evaluate_when_due(part)
-        return not self._stop
+    def _imitate(self) -> None:
+        """Learn from the task's script, and evaluate meanwhile."""
+
+        def after_round(part: float) -> bool:
+            self._evaluate_when_due(part)
+            return not self._stop
+
+        imitate(self.model, self.adapter, steps=self.config["imitate"], show=self.display.update,
+                after_round=after_round)  # fmt: skip
+        self._imitated = 0 if self._stop else self.model.num_timesteps
+        self.budget.free_steps = self.model.num_timesteps
+        self._pass_points(self.spent)
 
     def _loop(self) -> bool:
         iterate = ITERATIONS[type(self.model)]
@@ -261,7 +273,7 @@ class Training:
         self._evaluate_when_due(self.spent)
         while self.budget.fraction(self.model.num_timesteps, seconds_ahead=duration) < 1.0 and not self._stop:
             started, steps_before = time.monotonic(), self.model.num_timesteps
-            with critic_alone(self.model.policy, steps_before < self._critic_first):
+            with critic_alone(self.model.policy, steps_before - self._imitated < self._critic_first):
                 iterate(self.model, callback, self.budget)
             duration = time.monotonic() - started
             self._measure((self.model.num_timesteps - steps_before) / duration)
@@ -291,7 +303,7 @@ class Training:
         episodes = self.model.ep_info_buffer
         means = {key: float(safe_mean([e[key] for e in episodes])) for key in ("r", "l", "distance")}
         row = {
-            "steps": self.steps,
+            "steps": self.model.num_timesteps,
             "seconds": self.budget.seconds,
             "steps_per_second": steps_per_second,
             "return": means["r"],
@@ -306,11 +318,6 @@ class Training:
         self.metrics.append(row)
         shown = ("steps", "steps_per_second", "return", "distance", "success")
         self.display.update(self.spent, {key.replace("steps_per_second", "steps/s"): row[key] for key in shown})
-
-    @property
-    def steps(self) -> int:
-        """Environment steps taken, those of imitation included."""
-        return self._imitated + self.model.num_timesteps
 
     @property
     def spent(self) -> float:
@@ -337,7 +344,7 @@ class Training:
             env_kwargs=self.config["hyperparameters"].get("env_kwargs"),
         ).summary()
         row = {
-            "steps": self.steps,
+            "steps": self.model.num_timesteps,
             "seconds": self.budget.seconds,
             "return": result["return_mean"],
             "return_ci95": result["return_ci95"],
@@ -352,7 +359,7 @@ class Training:
             self._save_best()
         self.evaluations.append(row)
         self.display.say(
-            f"evaluation at {self.steps:,} steps: return {row['return']:.3f} ± {row['return_ci95']:.3f}, "
+            f"evaluation at {self.model.num_timesteps:,} steps: return {row['return']:.3f} ± {row['return_ci95']:.3f}, "
             f"distance {row['distance']:.3f} m, success {row['success']:.0%}"
         )
 
@@ -365,8 +372,8 @@ class Training:
 
     def _finish(self) -> None:
         """Save the state for a later ``--resume``, the model for use, the curve and recordings of the best model."""
-        # who stops while it imitates begins anew
-        if self._imitated == self.config.get("imitate", 0):
+        # a run that is stopped while it imitates begins anew
+        if self._imitated or not self.config.get("imitate"):
             self._checkpoint()
         self._save_policy(self.folder)
         figure = curves.plot_run(self.folder)

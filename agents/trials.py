@@ -13,8 +13,9 @@ import elastica_gym  # noqa: F401  registers the environments
 from agents.scoring import Samples, goals_held
 from elastica_gym.bodies import grip
 from elastica_gym.bodies.body import activate
-from elastica_gym.cosserat import State, advance_together
+from elastica_gym.cosserat import State
 from elastica_gym.cosserat.model import make_control, make_state
+from elastica_gym.cosserat.threads import Team
 
 SAMPLE_TIME = 0.01
 """Most time from one sample to the next [s]"""
@@ -42,6 +43,7 @@ class Sampler:
         self._batch = batch
         model, n = batch.body.model, batch.num_envs
         self._copy, self._control = make_state(model, n), make_control(model, n)
+        self._team = Team(model, self._copy, self._control, batch.n_threads)
         n_parts = math.ceil(batch.n_substeps / math.floor(SAMPLE_TIME / batch.sim_dt + 1e-9))
         cuts = [batch.n_substeps * part // n_parts for part in range(n_parts + 1)]
         # the end of the control step is the batch's own
@@ -60,8 +62,7 @@ class Sampler:
         levels = np.clip(np.asarray(actions, dtype=np.float64), -1.0, 1.0)
         activate(batch.body.couples, levels[going], self._control.couple[: going.size])
         for n_substeps in self._parts:
-            advance_together(batch.body.model, self._copy, self._control, going.size, batch.sim_dt, n_substeps,
-                             batch.n_threads)  # fmt: skip
+            self._team.advance(going.size, batch.sim_dt, n_substeps)
             self._look(self._copy, going)
 
     def after(self) -> None:

@@ -24,6 +24,7 @@ from agents import cards
 from agents.checkpoints import write_atomically
 from agents.checks import BadInputError, choose, make_folder, run_command
 from agents.run_files import GAIT
+from agents.seeds import TEST
 from elastica_gym.envs import IDS
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -50,7 +51,7 @@ class Arguments:
     """Environments and policies (zero, random, scripted, cma, ppo, sac, pretrained) to keep to; by default all."""
     episodes: int = 100
     """Episodes of each evaluation."""
-    evaluation_seed: int = 2_000_000
+    evaluation_seed: int = TEST.start
     """Seed of the first of them; trainings and searches use others."""
     threads: int = 2
     """Threads for the physics."""

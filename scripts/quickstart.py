@@ -10,6 +10,8 @@ import tyro
 from rich.console import Console
 from rich.table import Table
 
+from agents.seeds import TEST
+
 ENV = "elastica_gym/SnakeForward-v0"
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -24,7 +26,7 @@ class Arguments:
     """Seed of the training."""
     episodes: int = 20
     """Episodes of each policy in the comparison."""
-    evaluation_seed: int = 2_000_000
+    evaluation_seed: int = TEST.start
     """Seed of the first of them; training and its evaluations use others."""
     out: Path = Path("runs")
     """Folder of all runs."""

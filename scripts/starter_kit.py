@@ -6,6 +6,7 @@ it does: it draws what activations do, records and films the policy, trains one 
 """
 
 import dataclasses
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -87,6 +88,8 @@ def main() -> None:
     run(ROOT / "scripts" / "draw_activations.py", "--output", out / "activations.png")
     show(arguments, out)
     trained = out / "trained"
+    # what an earlier tour has trained
+    shutil.rmtree(trained, ignore_errors=True)
     run("-m", "agents.train", "--env", arguments.env, "--algo", "ppo", "--minutes", arguments.minutes,
         "--evaluations", 2, "--folder", trained)  # fmt: skip
     for path in (Path(__file__), trained):

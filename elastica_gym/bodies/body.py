@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..cosserat import Model, Rod, State, advance, at_rest
-from ..cosserat.kernels.compiler import entry, inline
+from ..cosserat.kernels.compiler import entry, inline, stage
 from ..cosserat.kernels.contact import overlap
 from ..cosserat.kernels.vectors import column, plus, times, to_lab, vector
 from ..cosserat.model import Array, Index
 from ..cosserat.surroundings import Cylinder
-from ..muscles import N_ACTIVATIONS, Muscles, couple_matrix
+from ..muscles import N_ACTIVATIONS, Muscles, activation_names, couple_matrix
 from .mirror import Mirror
 
 
@@ -108,7 +108,7 @@ class Body:
             layout += [(f"object/{b}/velocity/{axis}", -20.0, 20.0) for axis in axes]
             layout += [(f"object/{b}/spin/{axis}", -50.0, 50.0) for axis in axes]
             layout += [(f"object/{b}/gap", -1.0, 4.0)]
-        return layout
+        return layout + [(f"activation/{name}", -1.0, 1.0) for name in activation_names(self.arms)]
 
 
 def couples_of(muscles: Muscles, rod: Rod, model: Model) -> Array:
@@ -151,16 +151,24 @@ def make_pose(n_envs: int, n_objects: int) -> Pose:
     )  # fmt: skip
 
 
+@stage
+def _command(activations, couples, out):
+    """Write the couples that activations (42,) command into ``out`` (3, L): a third of them acts in each direction."""
+    slots, third = np.uint64(out.shape[1]), activations.size // 3
+    for c in range(3):
+        for k in range(slots):
+            out[c, k] = 0.0
+        for a in range(c * third, (c + 1) * third):
+            level = activations[a]
+            for k in range(slots):
+                out[c, k] += level * couples[a, c, k]
+
+
 @entry
 def activate(couples, activations, out):
     """Write the couples that activations (B, 42) command into ``out`` (B, 3, L), environment by environment."""
     for i in range(activations.shape[0]):
-        out[i] = 0.0
-        for a in range(activations.shape[1]):
-            level = activations[i, a]
-            for c in range(3):
-                for k in range(out.shape[2]):
-                    out[i, c, k] += level * couples[a, c, k]
+        _command(activations[i], couples, out[i])
 
 
 @inline
@@ -220,9 +228,77 @@ def _feel_object(model, state, i, b, pose, row, at, inv_length):
     row[at + 12] = gap * inv_length
 
 
+@inline
+def _is_sound(model, state, senses, i):
+    """Return whether all is finite in environment i, and below the senses' ``fastest``."""
+    x, v, w, fastest = state.x[i], state.v[i], state.w[i], senses.fastest
+    sound = True
+    for c in range(3):
+        for k in range(model.mass.size):
+            # false for what is not a number, too
+            sound &= (abs(v[c, k]) < fastest) & (abs(x[c, k]) < 1e6) & (abs(w[c, k]) < 1e9)
+        for b in range(model.cylinders.mass.size):
+            sound &= (abs(state.body_v[i, b, c]) < fastest) & (abs(state.body_w[i, b, c]) < 1e9)
+    return sound
+
+
+@inline
+def _locate(model, state, senses, i, pose):
+    """Compute the pose of the animal in environment i."""
+    x, total, moment = state.x[i], 0.0, (0.0, 0.0, 0.0)
+    for k in range(model.mass.size):
+        total += model.mass[k]
+        moment = plus(moment, model.mass[k], column(x, k))
+    for c in range(3):
+        pose.centre[i, c] = moment[c] / total
+        pose.head[i, c] = x[c, senses.head]
+    pose.upright[i] = state.Q[i, 0, 1, senses.crown]
+    hx = _mean(x[0], senses.front) - _mean(x[0], senses.rear)
+    hz = _mean(x[2], senses.front) - _mean(x[2], senses.rear)
+    size = (hx * hx + hz * hz) ** 0.5
+    pose.heading[i, 0], pose.heading[i, 1] = (hx / size, hz / size) if size > 1e-9 else (1.0, 0.0)
+
+
+@inline
+def _read(model, state, levels, senses, i, pose, row):
+    """Write the readings of environment i, whose animal has been located, and return how many there are."""
+    n_nodes, n_joints, n_skin = senses.nodes.size, senses.joints.size, senses.skin.size - 1
+    inv_length, at = 1.0 / senses.length, 0
+    hx, hz, centre = pose.heading[i, 0], pose.heading[i, 1], vector(pose.centre[i])
+    for p in range(n_nodes):
+        k = senses.nodes[p]
+        _write(row, at, inv_length, hx, hz, plus(column(state.x[i], k), -1.0, centre))
+        _write(row, at + 3 * n_nodes, inv_length, hx, hz, column(state.v[i], k))
+        at += 3
+    at = 6 * n_nodes
+    for j in range(n_joints):
+        for c in range(3):
+            row[at] = state.kappa[i, c, senses.joints[j]] / senses.curvature_scale
+            at += 1
+    for j in range(n_joints):
+        for c in range(2):
+            row[at] = state.Q[i, c, 1, senses.joints[j]]
+            at += 1
+    _patches(row, at, state.normal_force[i], senses.skin, n_skin / senses.weight)
+    at += n_skin
+    bodies = model.cylinders
+    if bodies.mass.size > 0:
+        _patches(row, at, state.body_touch[i], senses.skin, n_skin / senses.weight)
+        at += n_skin
+    for b in range(bodies.mass.size):
+        _feel_object(model, state, i, b, pose, row, at, inv_length)
+        at += 13
+    for a in range(levels.shape[1]):
+        row[at + a] = levels[i, a]
+    return at + levels.shape[1]
+
+
 @entry
-def feel(model, state, senses, pose, readings):
-    """Compute the pose and the readings (B, R) of every environment, in the frame of its heading.
+def feel(model, state, levels, senses, pose, low, high, readings, envs):
+    """Compute the pose and the readings (B, R or more) of some environments (E,), in the frame of their headings.
+
+    Readings are clipped to their least and largest values (R or more,). Where the simulation has diverged, pose and
+    readings stay as they were.
 
     Readings, with the heading's forward, up and right axes: positions of nodes from the centre of
     mass in body lengths, their velocities in body lengths a second, curvature and twist in
@@ -230,60 +306,14 @@ def feel(model, state, senses, pose, readings):
     carries each patch of skin, over the weight of an equal share of the body. Where there are objects, the
     force with which they touch each patch, likewise; and of each its centre from the head in body lengths,
     axis, velocity in body lengths a second, angular velocity in rad/s, and the gap to the animal's surface
-    in body lengths. In a loop over environments rather than in NumPy, whose sums may round differently with
-    the size of the batch.
+    in body lengths. Last, the activations that the muscles have reached, ``levels`` (B, 42). In a loop over
+    environments rather than in NumPy, whose sums may round differently with the size of the batch.
     """
-    n_nodes, n_joints, n_skin = senses.nodes.size, senses.joints.size, senses.skin.size - 1
-    inv_length = 1.0 / senses.length
-    for i in range(state.x.shape[0]):
-        x, v = state.x[i], state.v[i]
-        total, sound = 0.0, True
-        for c in range(3):
-            pose.centre[i, c] = 0.0
-        for k in range(model.mass.size):
-            m = model.mass[k]
-            total += m
-            for c in range(3):
-                pose.centre[i, c] += m * x[c, k]
-                # false for what is not a number, too
-                sound = sound and abs(v[c, k]) < senses.fastest and abs(x[c, k]) < 1e6 and abs(state.w[i, c, k]) < 1e9
-        for b in range(model.cylinders.mass.size):
-            for c in range(3):
-                sound = sound and abs(state.body_v[i, b, c]) < senses.fastest and abs(state.body_w[i, b, c]) < 1e9
-        for c in range(3):
-            pose.centre[i, c] /= total
-            pose.head[i, c] = x[c, senses.head]
-        pose.upright[i] = state.Q[i, 0, 1, senses.crown]
-        pose.sound[i] = 1 if sound else 0
-
-        hx = _mean(x[0], senses.front) - _mean(x[0], senses.rear)
-        hz = _mean(x[2], senses.front) - _mean(x[2], senses.rear)
-        size = (hx * hx + hz * hz) ** 0.5
-        hx, hz = (hx / size, hz / size) if size > 1e-9 else (1.0, 0.0)
-        pose.heading[i, 0], pose.heading[i, 1] = hx, hz
-
-        row, at = readings[i], 0
-        centre = vector(pose.centre[i])
-        for p in range(n_nodes):
-            k = senses.nodes[p]
-            _write(row, at, inv_length, hx, hz, plus(column(x, k), -1.0, centre))
-            _write(row, at + 3 * n_nodes, inv_length, hx, hz, column(v, k))
-            at += 3
-        at = 6 * n_nodes
-        for j in range(n_joints):
-            for c in range(3):
-                row[at] = state.kappa[i, c, senses.joints[j]] / senses.curvature_scale
-                at += 1
-        for j in range(n_joints):
-            for c in range(2):
-                row[at] = state.Q[i, c, 1, senses.joints[j]]
-                at += 1
-        _patches(row, at, state.normal_force[i], senses.skin, n_skin / senses.weight)
-        at += n_skin
-        bodies = model.cylinders
-        if bodies.mass.size > 0:
-            _patches(row, at, state.body_touch[i], senses.skin, n_skin / senses.weight)
-            at += n_skin
-        for b in range(bodies.mass.size):
-            _feel_object(model, state, i, b, pose, row, at, inv_length)
-            at += 13
+    for e in range(envs.size):
+        i = envs[e]
+        pose.sound[i] = 1 if _is_sound(model, state, senses, i) else 0
+        if pose.sound[i] == 1:
+            _locate(model, state, senses, i, pose)
+            row = readings[i]
+            for at in range(_read(model, state, levels, senses, i, pose, row)):
+                row[at] = low[at] if row[at] < low[at] else high[at] if row[at] > high[at] else row[at]

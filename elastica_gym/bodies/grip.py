@@ -4,6 +4,7 @@ Both are told from where they are, not from forces. Surfaces are those that cont
 (`elastica_gym.cosserat.kernels.cylinders`): an element is its axis swept by a ball of its radius, and so is the object.
 """
 
+import functools
 from math import atan2
 from typing import NamedTuple
 
@@ -63,14 +64,11 @@ def grip(body: Body, state: State) -> Grip:
         raise ValueError(f"body {body.name!r} has no object to grip")
     arms, first = arm_elements(body), int(body.model.first_slot[0])
     thing, n_envs = body.model.cylinders, len(state.x)
-    centre, axis = state.body_x[:, 0], state.body_Q[:, 0, 2]
     gaps = np.zeros((n_envs, int(body.model.n_elements[0])))
     spans, windings, counts = np.zeros((n_envs, 2)), np.zeros((n_envs, 2)), np.zeros((n_envs, 2), dtype=np.int64)
-    elements = slice(first, first + gaps.shape[1])
-    nodes = slice(first, first + gaps.shape[1] + 1)
-    _measure(np.ascontiguousarray(state.x[:, :, nodes]), np.ascontiguousarray(state.radius[:, elements]), arms,
-             np.ascontiguousarray(centre), np.ascontiguousarray(axis), float(thing.length[0]), float(thing.radius[0]),
-             gaps, spans, windings, counts)  # fmt: skip
+    _measure(state.x, state.radius, first, arms, state.body_x, state.body_Q, float(thing.length[0]),
+             float(thing.radius[0]), gaps, spans, windings, counts)  # fmt: skip
+    centre, axis = state.body_x[:, 0], state.body_Q[:, 0, 2]
     return Grip(
         gaps=gaps, head_gap=gaps[:, arms[0, 1] : arms[1, 0]].min(axis=1), spans=spans, windings=windings,
         counts=counts, base=centre - 0.5 * thing.length[0] * axis,
@@ -78,27 +76,35 @@ def grip(body: Body, state: State) -> Grip:
     )  # fmt: skip
 
 
+@functools.lru_cache(maxsize=4)
 def arm_elements(body: Body) -> Index:
-    """Return the first element and the last + 1 of each arm, counted along the rod, (2, 2); the head is between."""
+    """Return the first element and the last + 1 of each arm, counted along the rod, (2, 2); the head is between.
+
+    Not to be changed.
+    """
     ends = np.sort(np.array(body.muscles.arms), axis=1) * body.rods[0].n_elements
     return np.round(ends).astype(np.int64)
 
 
 @entry
-def _measure(x, radius, arms, centres, axes, length, thickness, gaps, spans, windings, counts):
-    """Compute the gaps of all elements, and the span, winding and count of each arm, environment by environment."""
+def _measure(x, radius, slot, arms, body_x, body_Q, length, thickness, gaps, spans, windings, counts):
+    """Compute the gaps of all elements, and the span, winding and count of each arm, environment by environment.
+
+    The first element is in a slot of the Model.
+    """
     for i in range(x.shape[0]):
-        centre, axis = vector(centres[i]), vector(axes[i])
+        centre, axis = vector(body_x[i, 0]), vector(body_Q[i, 0, 2])
         start, edge = plus(centre, -0.5 * length, axis), times(length, axis)
         for k in range(gaps.shape[1]):
-            first = column(x[i], k)
-            depth, _, _ = overlap(first, plus(column(x[i], k + 1), -1.0, first), radius[i, k], start, edge, thickness)
+            first = column(x[i], slot + k)
+            way = plus(column(x[i], slot + k + 1), -1.0, first)
+            depth, _, _ = overlap(first, way, radius[i, slot + k], start, edge, thickness)
             gaps[i, k] = -depth
         for arm in range(arms.shape[0]):
             azimuth = winding = begin = end = deepest = 0.0
             last, count = (0.0, 0.0, 0.0), 0
             for k in range(arms[arm, 0], arms[arm, 1]):
-                way = plus(middle(x[i], k), -1.0, centre)
+                way = plus(middle(x[i], slot + k), -1.0, centre)
                 turn = atan2(dot(axis, cross(last, way)), dot(last, way) - dot(axis, last) * dot(axis, way))
                 azimuth += turn
                 winding += turn * min(max(1.0 - gaps[i, k] / NEARBY, 0.0), 1.0)

@@ -75,7 +75,6 @@ from .rod.knot_theory import KnotTheory, compute_link, compute_twist, compute_wr
 from .rod.rod_base import RodBase
 from .surface import Plane
 from .surroundings import Wave
-from .threads import advance_together
 from .timestepper import extend_stepper_interface, integrate
 from .timestepper.symplectic_steppers import PEFRL, PositionVerlet
 from .transformations import inv_skew_symmetrize, rotate
@@ -148,7 +147,6 @@ __all__ = [
     "UniformTorques",
     "Wave",
     "advance",
-    "advance_together",
     "at_rest",
     "build_model",
     "compute_link",

@@ -3,13 +3,14 @@
 import functools
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
 import numpy as np
 
+from .kernels.compiler import Bound
 from .kernels.step import advance_queue
-from .model import Control, Model, State
+from .model import Control, Index, Model, State
 
 Result = TypeVar("Result")
 APART = 5
@@ -29,17 +30,47 @@ def side_by_side(functions: Sequence[Callable[[], Result]]) -> list[Result]:
         first = functions[0]()
     finally:
         # also after Ctrl-C: when this returns or raises, nobody writes any more
-        wait(futures)
+        for future in futures:
+            future.exception()
     return [first, *(future.result() for future in futures)]
 
 
-def advance_together(
-    model: Model, state: State, control: Control, n_envs: int, dt: float, n_substeps: int, n_threads: int
-) -> None:
-    """Advance the first environments, as `advance` does, on several threads."""
-    order, queue = np.argsort(np.arange(n_envs) % APART, kind="stable"), np.zeros(1, dtype=np.int64)
-    job = functools.partial(advance_queue, model, state, control, order, queue, dt, n_substeps)
-    side_by_side([job] * max(1, min(n_threads, n_envs)))
+class Team:
+    """Threads that advance the environments of a State.
+
+    Parameters
+    ----------
+    model : Model
+    state : State
+    control : Control
+    n_threads : int
+        How many there are at most.
+    """
+
+    def __init__(self, model: Model, state: State, control: Control, n_threads: int) -> None:
+        self._advance = Bound(advance_queue, model, state, control)
+        self._n_threads = n_threads
+
+    def advance(self, n_envs: int, dt: float, n_substeps: int, then: Callable[[Index], None] | None = None) -> None:
+        """Advance the first environments, as `advance` does.
+
+        Each thread then calls ``then``, if it is given, with those that it has advanced, (k,).
+        """
+        order, queue = _order(n_envs), np.zeros(1, dtype=np.int64)
+
+        def work() -> None:
+            mine = np.empty_like(order)
+            n_mine = self._advance(order, queue, dt, n_substeps, mine)
+            if then is not None:
+                then(mine[:n_mine])
+
+        side_by_side([work] * max(1, min(self._n_threads, n_envs)))
+
+
+@functools.lru_cache(maxsize=8)
+def _order(n_envs: int) -> Index:
+    """Return the order in which environments are taken; not to be changed."""
+    return np.argsort(np.arange(n_envs) % APART, kind="stable")
 
 
 @functools.lru_cache(maxsize=8)

@@ -1,5 +1,6 @@
 """The batched environment: all logic, over a leading environment axis."""
 
+import functools
 from collections.abc import Sequence
 from copy import deepcopy
 from typing import TYPE_CHECKING, Any
@@ -12,12 +13,13 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from ..bodies.body import Pose, activate, feel, make_pose
-from ..cosserat import advance, advance_together, at_rest
-from ..cosserat.model import Array, Index
+from ..bodies.body import activate, feel, make_pose
+from ..cosserat import advance, at_rest
+from ..cosserat.kernels.compiler import Bound
+from ..cosserat.model import Array
 from ..cosserat.rod import require_positive, require_stable
-from ..cosserat.threads import available_cpus
-from ..muscles import N_ACTIVATIONS, activation_names
+from ..cosserat.threads import Team, available_cpus
+from ..muscles import N_ACTIVATIONS
 from .task import Mask, Situation, Task
 
 if TYPE_CHECKING:
@@ -127,7 +129,6 @@ class BatchEnv(VectorEnv):
 
     def _make_spaces(self) -> None:
         layout = self.body.readings()
-        layout += [(f"activation/{name}", -1.0, 1.0) for name in activation_names(self.body.arms)]
         layout += [("clock/sine", -1.0, 1.0), ("clock/cosine", -1.0, 1.0), ("time_left", 0.0, 1.0)]
         layout += [(name, *bounds) for name, bounds in zip(self.task.goal_names, self.task.goal_bounds, strict=True)]
         self.observation_names = tuple(name for name, _, _ in layout)
@@ -147,8 +148,10 @@ class BatchEnv(VectorEnv):
         self.elapsed = np.zeros(n, dtype=np.int64)
         self.activations = np.zeros((n, N_ACTIVATIONS))
         self.levels = np.zeros((n, N_ACTIVATIONS))
-        self._readings = np.zeros((n, len(self.body.readings())))
         self._observations = np.zeros((n, len(self.observation_names)), dtype=np.float32)
+        self._team = Team(self.body.model, self.state, self.control, self.n_threads)
+        self._feel = Bound(feel, self.body.model, self.state, self.levels, self.body.senses, self.pose, self._low,
+                           self._high, self._observations)  # fmt: skip
         self._distance = np.zeros(n)
         self._ended = np.zeros(n, dtype=bool)
         self._generators: list[np.random.Generator] | None = None
@@ -211,16 +214,17 @@ class BatchEnv(VectorEnv):
         if self._generators is None:
             raise RuntimeError("call reset before step")
         begin = self._ended & (self.autoreset_mode == AutoresetMode.NEXT_STEP)
-        self.activations[:] = self._checked_actions(actions, begin)
+        self._command(actions, begin)
         self._advance()
-        sound = self.pose.sound == 1
-        rewards, info = self._judge(sound)
-        ends = {name: failed(self.situation()) for name, failed in self.task.failures.items()}
+        now, sound = self.situation(), self.pose.sound == 1
+        self._follow(now, sound)
+        rewards, info = self._judge(now, sound)
+        ends = {name: failed(now) for name, failed in self.task.failures.items()}
         ends |= {"success": info["is_success"] & self.task.ends_on_success, "diverged": ~sound}
-        terminated = np.any(list(ends.values()), axis=0)
+        terminated = functools.reduce(np.logical_or, ends.values())
         truncated = ~terminated & (self.elapsed >= self.max_episode_steps)
         info["termination_reason"] = _reasons({"time_limit": truncated, **ends})
-        self._observe(sound)
+        self._observe(now, sound)
         if begin.any():
             self._start(begin)
             self._blank(begin, rewards, terminated, truncated, info)
@@ -228,7 +232,7 @@ class BatchEnv(VectorEnv):
         if self.autoreset_mode == AutoresetMode.SAME_STEP and self._ended.any():
             info = self._restart(self._ended.copy(), info)
         else:
-            info |= {f"_{name}": ~begin for name in info}
+            info |= dict.fromkeys([f"_{name}" for name in info], ~begin)
         return self._observations.copy(), rewards, terminated, truncated, info
 
     def render(self) -> "tuple[Image, ...] | None":
@@ -271,40 +275,32 @@ class BatchEnv(VectorEnv):
 
     # one control step
 
-    def _checked_actions(self, actions: Array, ignored: Mask) -> Array:
-        values = np.asarray(actions, dtype=np.float64)
+    def _command(self, actions: Array, ignored: Mask) -> None:
+        """Set the activations to what the actions ask for, and to zero where these are ignored."""
+        values = np.array(actions, dtype=np.float64)
         if values.shape != self.action_space.shape:
             raise ValueError(f"actions must have shape {self.action_space.shape}, not {values.shape}")
-        wrong = np.isnan(values).any(axis=1) & ~ignored
+        values[ignored] = 0.0
+        wrong = np.isnan(values).any(axis=1)
         if wrong.any():
             raise ValueError(f"actions must be numbers, but those of environment {int(wrong.argmax())} hold NaN")
-        return np.where(ignored[:, None], 0.0, np.clip(values, -1.0, 1.0))
+        values.clip(-1.0, 1.0, out=self.activations)
 
     def _advance(self) -> None:
         """Move the animals, and feel where they are."""
+        for old, new in zip(self._before, self.pose, strict=True):
+            old[...] = new
+        self._progress_before[:] = self.progress
         activate(self.body.couples, self.activations, self.control.couple)
-        advance_together(self.body.model, self.state, self.control, self.num_envs, self.sim_dt, self.n_substeps,
-                         self.n_threads)  # fmt: skip
         # the physics does the same to couples, in n_substeps parts
         tau = self.body.muscles.activation_time
         self.levels += (self.activations - self.levels) * (1.0 - np.exp(-self.control_dt / tau))
         self.elapsed += 1
-        for old, new in zip(self._before, self.pose, strict=True):
-            old[...] = new
-        self._feel(self._before)
-        self._progress_before[:] = self.progress
-        self._follow(self.pose.sound == 1)
+        self._team.advance(self.num_envs, self.sim_dt, self.n_substeps, self._feel)
 
-    def _feel(self, last: Pose) -> None:
-        """Feel where the animals are; of those that have diverged, the pose stays the last sound one."""
-        feel(self.body.model, self.state, self.body.senses, self.pose, self._readings)
-        diverged = self.pose.sound == 0
-        for old, new in zip(last._replace(sound=self.pose.sound), self.pose, strict=True):
-            new[diverged] = old[diverged]
-
-    def _follow(self, where: Mask | Index) -> None:
+    def _follow(self, now: Situation, where: Mask) -> None:
         """Follow the episodes of some environments."""
-        self.progress[where] = self.task.follow(self.situation(), self.state)[where]
+        np.copyto(self.progress, self.task.follow(now, self.state), where=where[:, None])
 
     @property
     def observations(self) -> Observations:
@@ -317,29 +313,28 @@ class BatchEnv(VectorEnv):
         return Situation(self.pose, self._before, self.goal, self.progress, self._progress_before, self.activations,
                          left, self.control_dt, self.body)  # fmt: skip
 
-    def _judge(self, sound: Mask) -> tuple[Array, dict[str, Any]]:
+    def _judge(self, now: Situation, sound: Mask) -> tuple[Array, dict[str, Any]]:
         """Return the rewards and an info with each of their terms; where physics has failed, only the penalty."""
-        situation = self.situation()
         rewards, info = np.zeros(self.num_envs), {}
         for name, term in self.task.reward_terms.items():
-            value = np.where(sound, self.weights[name] * term(situation), 0.0)
+            value = np.where(sound, self.weights[name] * term(now), 0.0)
             info[f"reward_{name}"] = value
             rewards += value
         info["reward_diverged"] = np.where(sound, 0.0, self.weights["diverged"])
         rewards += info["reward_diverged"]
-        self._distance = np.where(sound, self.task.distance(situation), self._distance)
+        self._distance = np.where(sound, self.task.distance(now), self._distance)
         info["distance"] = self._distance.copy()
-        info["is_success"] = sound & self.task.succeeds(situation)
+        info["is_success"] = sound & self.task.succeeds(now)
         return rewards, info
 
-    def _observe(self, where: Mask | Index) -> None:
-        """Write the observations of some environments; the others keep their last ones."""
+    def _observe(self, now: Situation, where: Mask) -> None:
+        """Write what some environments observe beside what is felt; the others keep what they observed last."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
-        situation = self.situation()
         columns = np.concatenate(
-            [self._readings, self.levels, np.sin(angle)[:, None], np.cos(angle)[:, None],
-             situation.time_left[:, None], self.task.see_goal(situation)], axis=1)  # fmt: skip
-        self._observations[where] = np.clip(columns[where], self._low, self._high)
+            [np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None], self.task.see_goal(now)],
+            axis=1, dtype=np.float32)  # fmt: skip
+        n = columns.shape[1]
+        columns.clip(self._low[-n:], self._high[-n:], out=self._observations[:, -n:], where=where[:, None])
 
     # episodes
 
@@ -372,24 +367,17 @@ class BatchEnv(VectorEnv):
             # a step of no duration moves nothing, and computes curvature and contact for the senses
             advance(self.body.model, self.state, self.control, i, i + 1, 0.0, 1)
             self.state.step[i] = 0
-        self._feel(Pose._make(field.copy() for field in self.pose))
+        self._feel(begun)
         for old, new in zip(self._before, self.pose, strict=True):
             old[begun] = new[begun]
+        now = self.situation()
         for i in begun.tolist():
-            self.goal[i] = self.task.draw_goal(self._generators[i], self._situation_of(i))
+            self.goal[i] = self.task.draw_goal(self._generators[i], now.only(slice(i, i + 1)))
         self.progress[begun] = 0.0
-        self._follow(begun)
+        self._follow(now, mask)
         self._progress_before[begun] = self.progress[begun]
-        self._distance[begun] = self.task.distance(self.situation())[begun]
-        self._observe(begun)
-
-    def _situation_of(self, i: int) -> Situation:
-        one = slice(i, i + 1)
-        s = self.situation()
-        return s._replace(
-            pose=s.pose.only(one), before=s.before.only(one), goal=s.goal[one], progress=s.progress[one],
-            progress_before=s.progress_before[one], activations=s.activations[one], time_left=s.time_left[one],
-        )  # fmt: skip
+        self._distance[begun] = self.task.distance(now)[begun]
+        self._observe(now, mask)
 
     def _blank(self, begun: Mask, rewards: Array, terminated: Mask, truncated: Mask, info: dict[str, Any]) -> None:
         """Clear what a step that only began an episode returns (autoreset NEXT_STEP)."""
@@ -438,8 +426,8 @@ class BatchEnv(VectorEnv):
             array[...] = value
         for name, value in saved["physics"].items():
             getattr(self.state, name)[...] = value
-        for name, value in saved["episodes"].items():
-            setattr(self, name, value.copy())
+        for name in _EPISODE_STATE:
+            getattr(self, name)[...] = saved["episodes"][name]
         for pose, values in zip((self.pose, self._before), saved["poses"], strict=True):
             for mine, value in zip(pose, values, strict=True):
                 mine[...] = value
@@ -467,8 +455,8 @@ class BatchEnv(VectorEnv):
         return self.task.target(self.goal)
 
 
-_EPISODE_STATE = ("goal", "progress", "_progress_before", "elapsed", "activations", "levels", "_readings",
-                  "_observations", "_distance", "_ended")  # fmt: skip
+_EPISODE_STATE = ("goal", "progress", "_progress_before", "elapsed", "activations", "levels", "_observations",
+                  "_distance", "_ended")  # fmt: skip
 
 
 def _require_count(name: str, value: int, most: int) -> None:

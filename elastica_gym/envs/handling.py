@@ -65,7 +65,7 @@ class Handling(NamedTuple):
     tilt: Array
     """Angle of its axis from upright [rad]"""
     head_way: Array
-    """Furthest that the head has been from where it was at the start [m]"""
+    """Furthest that the head has been from home, which is where it starts but in OctopusReturn [m]"""
     centre_way: Array
     """Furthest that the centre of mass has been from there [m]"""
 

@@ -75,7 +75,8 @@ finite, or a node or the object is faster than 50 m/s: then the last sound obser
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("anywhere").
+``n_threads``, ``weights``, ``spread`` ("anywhere"), ``render_mode``,
+``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history
 ---------------

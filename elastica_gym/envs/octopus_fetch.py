@@ -68,6 +68,8 @@ grabbed when an arm spans 200 degrees or more around its axis at the ends of all
 go when no arm has spanned 150 degrees for more than 0.2 s. Success is when all of this is so: the head has been
 0.2 m and the centre of mass 0.1 m from where it was at the start; the object has been moved by 0.1 m while it
 stood and was touched; it is held; the head is within 0.1 m of home, and the object within 0.3 m of the head.
+``scripts/score.py`` asks for more: that the surfaces of head and object have been within 0.05 m, that head and
+centre of mass have crawled so far at the same moment, and that the arm that has grabbed is the one that holds.
 All but the last six terms are differences of what is so far, so doing a thing again earns nothing. The info
 also has ``distance``, by how much the object is nearer to home than at the start [m]; ``is_success``; and
 ``termination_reason``: empty, ``success``, ``time_limit``, ``toppled``, ``fallen`` or ``diverged``.
@@ -91,7 +93,8 @@ is faster than 50 m/s: then the last sound observation is returned.
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("anywhere", "arc" or "default").
+``n_threads``, ``weights``, ``spread`` ("anywhere", "arc" or "default"), ``render_mode``,
+``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history
 ---------------

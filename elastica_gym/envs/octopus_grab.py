@@ -88,7 +88,8 @@ is faster than 50 m/s: then the last sound observation is returned.
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("default", "arc", "anywhere" or "near").
+``n_threads``, ``weights``, ``spread`` ("default", "arc", "anywhere" or "near"), ``render_mode``,
+``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history
 ---------------

@@ -82,7 +82,8 @@ object is faster than 50 m/s: then the last sound observation is returned. What 
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("held").
+``n_threads``, ``weights``, ``spread`` ("held"), ``render_mode``,
+``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history
 ---------------

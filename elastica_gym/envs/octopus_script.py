@@ -1,9 +1,10 @@
 """A scripted octopus: it walks to its object, turns an arm's inside to it, bends the arm around it and carries it home.
 
-It goes by observations, and by nothing but the present. Bending at full strength, an arm takes hold of what stands
-in its bend, within some 15 cm of its base and on the right of it, the side away from the other arm. Places are as
-seen from the head: ahead and to the right [m]. What holds for the second arm, which points ahead, holds for
-the first one in the mirror: with the same activations, for those that twist are zero.
+It goes by what is observed, the time, whether the object is grabbed, and how far the head has been from home. Bending
+at full strength, an arm takes hold of what stands in its bend, within some 15 cm of its base and on the right of it,
+the side away from the other arm. Places are as seen from the head: ahead and to the right [m]. What holds for the
+second arm, which points ahead, holds for the first one in the mirror: with the same activations, for those that twist
+are zero.
 """
 
 from typing import TYPE_CHECKING, NamedTuple

@@ -67,7 +67,8 @@ sound observation is returned. Truncated after 20 s, which are 400 control steps
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00011 s), ``duration``,
-``n_threads``, ``autoreset_mode``, ``weights``, ``spread`` ("bent"), ``body_kwargs``.
+``n_threads``, ``weights``, ``spread`` ("bent"), ``body_kwargs``, ``render_mode``,
+``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history
 ---------------

@@ -88,7 +88,8 @@ def test_shipped_policies_have_cards_and_load(name):
     assert set(card) == CARD and card["name"] == name
     assert "snake" in name or "octopus" in name
     assert card["score"]["episodes"] >= 100 and card["score"]["first_seed"] >= 2_000_000
-    assert bool(card["hyperparameters"].get("normalize")) == (policy.normalization is not None)
+    normalize = hyperparameters.normalize_arguments(card["hyperparameters"]) or {"norm_obs": False}
+    assert normalize.get("norm_obs", True) == (policy.normalization is not None)
     env_kwargs = {**card["env_kwargs"], "duration": 0.2}
     result = evaluate(policy, card["environment"], episodes=2, seed=0, env_kwargs=env_kwargs)
     assert np.isfinite(result.returns).all() and result.divergences == 0

@@ -140,12 +140,13 @@ def test_nothing_goes_through_anything(body, scene, seed):
     state, control = scene
     rng = np.random.default_rng(seed)
     state.body_x[0, 0, [0, 2]] = [[0.02, 0.32], [0.06, -0.36], [-0.2, 0.1], [0.2, -0.2]][seed]
-    pose, readings = make_pose(1, 1), np.zeros((1, len(body.readings())))
+    low, high = np.array([bounds for _, *bounds in body.readings()], dtype=np.float32).T.copy()
+    pose, readings = make_pose(1, 1), np.zeros((1, low.size), dtype=np.float32)
     rod_touched = body_touched = 0.0
     for _ in range(6):
         # what strikes at 5 m/s goes 8 mm between two looks
         for _ in play(body, state, control, np.sign(rng.uniform(-1.0, 1.0, 42)), 0.3, parts=31):
-            feel(body.model, state, body.senses, pose, readings)
+            feel(body.model, state, np.zeros((1, 42)), body.senses, pose, low, high, readings, np.arange(1))
             assert pose.sound[0] == 1
             assert pose.gaps[0, 0] > -5e-3
             assert ground_clearance(body, state) > -5e-3

@@ -1,11 +1,13 @@
 """A batch is as many single environments, whoever computes them."""
 
+import pickle
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 from elastica_gym.cosserat import advance, at_rest, build_model, make_state
+from elastica_gym.cosserat.threads import Team
 
 from .scenes import GRAVITY, TIME_STEP, disturb, ground, motion, snake
 
@@ -48,6 +50,20 @@ def test_threads_change_no_bit(n_threads):
         jobs = [pool.submit(advance, *many, int(a), int(b), TIME_STEP, 200) for a, b in zip(borders, borders[1:])]  # noqa: B905, RUF007
         for job in jobs:
             job.result()
+    for a, b in zip(one[1], many[1], strict=True):
+        assert np.array_equal(a, b)
+
+
+@pytest.mark.parametrize("n_threads", [1, 2, 5])
+def test_a_team_advances_each_environment_once(n_threads):
+    one, many = batch(10), batch(10)
+    advance(*one, 0, 7, TIME_STEP, 200)
+    team, told = pickle.loads(pickle.dumps(Team(*many, n_threads))), []
+    assert team.advance(7, TIME_STEP, 200) is None
+    assert not np.array_equal(one[1].x, many[1].x)
+    Team(*many, n_threads).advance(7, TIME_STEP, 200, told.append)
+    assert len(told) == n_threads
+    assert sorted(np.concatenate(told)) == list(range(7))
     for a, b in zip(one[1], many[1], strict=True):
         assert np.array_equal(a, b)
 

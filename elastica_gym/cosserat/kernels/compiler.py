@@ -17,6 +17,7 @@ load an entry stale after a change to a stage in another one.
 
 import functools
 import hashlib
+import importlib
 import importlib.metadata
 import os
 import sys
@@ -190,6 +191,33 @@ def entry(function: Callable) -> Callable:
     dispatcher = numba.njit(pipeline_class=_EntryPipeline, **_COMMON)(function)
     dispatcher._cache = _EntryCache(dispatcher.py_func)
     return dispatcher
+
+
+class Bound:
+    """An entry whose first arguments are given, for those who call it often.
+
+    Numba finds out at each call what types the arguments are, which for the arrays of a Model and a State takes it
+    longer than to call. Here it does so once: all other arguments have to be of the same types at each call.
+    """
+
+    def __init__(self, function: Any, *arguments: Any) -> None:
+        self._function, self._arguments = function, arguments
+        self._code: Callable | None = None
+
+    def __call__(self, *others: Any) -> Any:
+        """Call the entry with all its arguments."""
+        if self._code is None:
+            types = tuple(numba.typeof(each) for each in (*self._arguments, *others))
+            self._code = self._function.compile(types)
+        return self._code(*self._arguments, *others)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # copies, here or in another process, find the code by themselves
+        return _bind, (self._function.__module__, self._function.__name__, *self._arguments)
+
+
+def _bind(module: str, name: str, *arguments: Any) -> Bound:
+    return Bound(getattr(importlib.import_module(module), name), *arguments)
 
 
 @functools.cache

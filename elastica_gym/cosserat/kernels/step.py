@@ -155,11 +155,13 @@ def kick(model, state, i, n, dt):
 
 
 @entry
-def advance_queue(model, state, control, order, queue, dt, n_substeps):
+def advance_queue(model, state, control, order, queue, dt, n_substeps, mine):
     """Advance the environments that ``order`` lists from place ``queue[0]`` on, as `advance` does, among threads.
 
-    Who is done with an environment takes the next one: CPUs of a shared machine are not equally fast.
+    Who is done with an environment takes the next one: CPUs of a shared machine are not equally fast. Returns how
+    many this thread has advanced, and writes which into ``mine``.
     """
+    n_mine = 0
     n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
     place: int = take(queue)  # type: ignore[call-arg] # the context is Numba's to give
     while place < order.size:
@@ -182,7 +184,10 @@ def advance_queue(model, state, control, order, queue, dt, n_substeps):
         # once a call: what neighbours write shares a cache line with what other threads read
         state.step[i] += n_substeps
         state.time[i] = start + n_substeps * dt
+        mine[n_mine] = i
+        n_mine += 1
         place = take(queue)
+    return n_mine
 
 
 def advance(model: Model, state: State, control: Control, first: int, last: int, dt: float, n_substeps: int) -> None:
@@ -190,4 +195,5 @@ def advance(model: Model, state: State, control: Control, first: int, last: int,
 
     The half drifts of consecutive steps are one, within a call.
     """
-    advance_queue(model, state, control, np.arange(first, last), np.zeros(1, dtype=np.int64), dt, n_substeps)
+    envs = np.arange(first, last)
+    advance_queue(model, state, control, envs, np.zeros(1, dtype=np.int64), dt, n_substeps, np.empty_like(envs))
