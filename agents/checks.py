@@ -12,11 +12,11 @@ from typing import Any, NoReturn
 EXTRAS = {
     "train": {
         **{"stable-baselines3": "2.9", "torch": "2.3", "tyro": "0.9", "rich": "13"},
-        **{"matplotlib": "3.8", "pyyaml": "6", "cma": "4"},
+        **{"tqdm": "4.66", "matplotlib": "3.8", "pyyaml": "6", "cma": "4"},
     },
-    "viz": {"rerun-sdk": "0.41"},
+    "viz": {"rerun-sdk": "0.41", "mujoco": "4", "imageio-ffmpeg": "0.6", "pillow": "11"},
 }
-"""Packages that each optional dependency group brings and that are used here, with their lowest versions."""
+"""Packages that each optional dependency group for users brings, with their lowest versions, as in pyproject.toml."""
 
 
 class BadInputError(Exception):
