@@ -5,18 +5,18 @@ import importlib.metadata
 import os
 import re
 import sys
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 EXTRAS = {
     "train": {
         **{"stable-baselines3": "2.9", "torch": "2.3", "tyro": "0.9", "rich": "13"},
-        **{"matplotlib": "3.8", "pyyaml": "6", "cma": "4"},
+        **{"tqdm": "4.66", "matplotlib": "3.8", "pyyaml": "6", "cma": "4"},
     },
-    "viz": {"rerun-sdk": "0.41"},
+    "viz": {"rerun-sdk": "0.41", "mujoco": "4", "imageio-ffmpeg": "0.6", "pillow": "11"},
 }
-"""Packages that each optional dependency group brings and that are used here, with their lowest versions."""
+"""Packages that each optional dependency group for users brings, with their lowest versions, as in pyproject.toml."""
 
 
 class BadInputError(Exception):
@@ -31,6 +31,14 @@ def choose(what: str, name: str, valid: Collection[str]) -> str:
     hint = f"; did you mean {near[0]!r}?" if near else "."
     there = [*near, *sorted(set(valid) - set(near))]
     raise BadInputError(f"Unknown {what} {name!r}{hint} Valid: {', '.join(there)}.")
+
+
+def check_bounds(values: Mapping[str, Any], lowest: Mapping[str, float]) -> None:
+    """Raise ``BadInputError`` for the first of `values` below its `lowest`; those that are None are not looked at."""
+    for key, bound in lowest.items():
+        # so written, a NaN is refused
+        if (value := values.get(key)) is not None and not value >= bound:
+            raise BadInputError(f"{key} must be at least {bound}, got {value}")
 
 
 def missing_extra(extra: str) -> str | None:

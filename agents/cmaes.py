@@ -81,19 +81,19 @@ class Search:
         """Begin anew and go on until this beginning's part of the budget is spent, or CMA-ES sees no way on."""
         end = min(1.0, (number + 1) / (self.config["restarts"] + 1))
         strategy = self._strategy(number)
-        generation, last = 0, strategy.x0
         # one generation at least, so that the shortest search finds something
-        while generation == 0 or (self._spent() < end and not strategy.stop()):
+        generation, goes_on = 0, True
+        while goes_on:
             candidates = np.array(strategy.ask())
             values, _ = self._values(self._batch, candidates, self._draw_starts())
             strategy.tell(list(candidates), list(-values))
-            generation, last = generation + 1, candidates[values.argmax()]
+            generation += 1
             self.evaluations += len(candidates)
+            goes_on = self._spent() < end and not strategy.stop()
+            if generation % GENERATIONS_BETWEEN_TRIALS == 0 or not goes_on:
+                self._try(number, strategy.result.xfavorite, candidates[values.argmax()])
+            # after the trial, or what the last one finds would be in no row
             self._note(number, generation, values, strategy.sigma)
-            if generation % GENERATIONS_BETWEEN_TRIALS == 0:
-                self._try(number, strategy.result.xfavorite, last)
-        if generation % GENERATIONS_BETWEEN_TRIALS:
-            self._try(number, strategy.result.xfavorite, last)
 
     def _strategy(self, number: int) -> cma.CMAEvolutionStrategy:
         """Return CMA-ES about the published gait, or later about one drawn at random."""

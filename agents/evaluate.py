@@ -11,6 +11,7 @@ import numpy as np
 
 from agents.checks import (
     BadInputError,
+    check_bounds,
     choose,
     environment_ids,
     make_folder,
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from agents.policies import Policy
     from agents.vec_env import BatchVecEnv
 
+LOWEST = {"episodes": 1, "seed": 0, "n_threads": 1}
 LARGEST_BATCH = 1024
 """Episodes that run side by side; more than these are run in turns."""
 
@@ -86,8 +88,7 @@ def evaluate(
 
     What an episode comes to depends on its seed alone, and not on how many run beside it.
     """
-    if episodes < 1:
-        raise BadInputError(f"episodes must be at least 1, got {episodes}")
+    check_bounds({"episodes": episodes, "seed": seed, "n_threads": n_threads}, LOWEST)
     parts = []
     for first in range(0, episodes, LARGEST_BATCH):
         seeds = [seed + i for i in range(first, min(first + LARGEST_BATCH, episodes))]

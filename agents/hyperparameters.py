@@ -73,8 +73,21 @@ def parse_overrides(assignments: list[str]) -> dict[str, Any]:
         key, separator, value = assignment.partition("=")
         if not separator:
             raise BadInputError(f"Expected KEY=VALUE, got {assignment!r}.")
-        overrides[key] = yaml.safe_load(value)
+        try:
+            overrides[key] = yaml.safe_load(value)
+        except yaml.YAMLError:
+            raise BadInputError(f"The value of {key} is not YAML: {value!r}") from None
     return overrides
+
+
+def timesteps(values: dict[str, Any]) -> int:
+    """Return the environment steps to train for that `values` ask for."""
+    try:
+        # YAML reads 1e6 as a text
+        return int(float(values["n_timesteps"]))
+    except (KeyError, OverflowError, TypeError, ValueError):
+        wrong = values.get("n_timesteps")
+        raise BadInputError(f"n_timesteps must be a number of environment steps, got {wrong!r}") from None
 
 
 def algorithm_arguments(values: dict[str, Any]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any, Self
 import numpy as np
 from tqdm import tqdm
 
-from agents.checks import BadInputError, choose, environment_ids, missing_extra
+from agents.checks import BadInputError, check_bounds, choose, environment_ids, missing_extra
 from agents.policy_process import PolicyError, PolicyProcess
 from agents.scoring import GENERAL, GOALS, POINTS, Mask, goals_held, score
 from agents.seeds import target_seeds
@@ -50,7 +50,7 @@ def judge(
         ``total``, the points of each goal by its name, ``held`` (how many episodes hold each goal, by kind of
         target), ``error`` (empty, or why the policy has failed, which is then worth nothing), and what was asked.
     """
-    _check(env_id, targets, target_seed, record)
+    _check(env_id, targets, target_seed, n_threads, record)
     held: dict[str, Mask] = {}
     error = ""
     with PolicyProcess(path) as policy:
@@ -92,7 +92,7 @@ def print_score(result: dict[str, Any]) -> None:
     console.print(table)
 
 
-def _check(env_id: str, targets: int, target_seed: int, record: Path | None) -> None:
+def _check(env_id: str, targets: int, target_seed: int, n_threads: int, record: Path | None) -> None:
     from elastica_gym.envs import TASKS
 
     choose("environment", env_id, environment_ids())
@@ -101,8 +101,7 @@ def _check(env_id: str, targets: int, target_seed: int, record: Path | None) -> 
         raise BadInputError(f"{env_id} has no object to fetch from {', '.join(KINDS)} targets.")
     if not 1 <= targets <= MOST_TARGETS:
         raise BadInputError(f"targets must be from 1 to {MOST_TARGETS}, got {targets}")
-    if target_seed < 0:
-        raise BadInputError(f"target-seed must not be negative, got {target_seed}")
+    check_bounds({"target_seed": target_seed, "n_threads": n_threads}, {"target_seed": 0, "n_threads": 1})
     if record is not None and (message := missing_extra("viz")):
         raise BadInputError(f"A recording needs the extra viz: {message}")
 

@@ -5,7 +5,16 @@ import time
 from pathlib import Path
 from typing import Any, Literal
 
-from agents.checks import BadInputError, choose, environment_ids, fail, make_folder, require_extra, run_command
+from agents.checks import (
+    BadInputError,
+    check_bounds,
+    choose,
+    environment_ids,
+    fail,
+    make_folder,
+    require_extra,
+    run_command,
+)
 from agents.run_files import GAIT, SEARCH
 from agents.seeds import VALIDATION
 
@@ -81,9 +90,7 @@ def _started(arguments: SearchArguments) -> tuple[Path, dict[str, Any]]:
     config = {key: value for key, value in dataclasses.asdict(arguments).items() if key not in ("out", "folder")}
     if arguments.evaluations is arguments.minutes is None:
         config["evaluations"] = DEFAULT_EVALUATIONS
-    for key, bound in LOWEST.items():
-        if config[key] is not None and config[key] < bound:
-            raise BadInputError(f"{key} must be at least {bound}, got {config[key]}")
+    check_bounds(config, LOWEST)
     name = f"search-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
     folder = arguments.folder or arguments.out / arguments.env.rpartition("/")[2] / name
     if (folder / SEARCH).exists():

@@ -7,7 +7,16 @@ import time
 from pathlib import Path
 from typing import Any
 
-from agents.checks import BadInputError, choose, environment_ids, fail, make_folder, require_extra, run_command
+from agents.checks import (
+    BadInputError,
+    check_bounds,
+    choose,
+    environment_ids,
+    fail,
+    make_folder,
+    require_extra,
+    run_command,
+)
 from agents.run_files import BEST
 from agents.seeds import TRAINING, VALIDATION
 
@@ -116,7 +125,7 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
         **{key: value for key, value in dataclasses.asdict(arguments).items() if key not in _NOT_IN_CONFIG},
         "start_from": _start(arguments.start_from),
         "config": arguments.config and str(arguments.config),
-        "steps": int(values["n_timesteps"]) if arguments.steps is arguments.minutes is None else arguments.steps,
+        "steps": hyperparameters.timesteps(values) if arguments.steps is arguments.minutes is None else arguments.steps,
         "hyperparameters": values,
         "versions": {"python": platform.python_version(), **_versions()},
     }
@@ -156,11 +165,9 @@ def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
 
 def _check(config: dict[str, Any]) -> None:
     choose("environment", config["env"], environment_ids())
-    lowest = {"steps": 0, "minutes": 0.0, "imitate": 0, "threads": 1, "evaluations": 0, "evaluation_episodes": 1,
-              "recordings": 0}  # fmt: skip
-    for key, bound in lowest.items():
-        if (value := config.get(key)) is not None and value < bound:
-            raise BadInputError(f"{key} must be at least {bound}, got {value}")
+    lowest = {"steps": 0 if config.get("imitate") else 1, "minutes": 0.001, "imitate": 0, "threads": 1,
+              "evaluations": 0, "evaluation_episodes": 1, "recordings": 0, "checkpoint_minutes": 0.0}  # fmt: skip
+    check_bounds(config, lowest)
     if config.get("imitate") and config["algo"] != "ppo":
         raise BadInputError(f"imitate must be 0 for {config['algo']}, got {config['imitate']}: only ppo can imitate")
     for key, allowed in (("seed", TRAINING), ("evaluation_seed", VALIDATION)):

@@ -36,6 +36,12 @@ from agents.vec_env import BatchVecEnv, make_batch_vec_env, observation_names
 SAC_STEPS_PER_ITERATION = 512
 """Environment steps that make an iteration of SAC, which updates its networks every few steps."""
 
+UPDATE_COLUMNS: dict[type, tuple[str, ...]] = {
+    PPO: (),
+    SAC: ("learning_rate", "n_updates", "ent_coef", "actor_loss", "critic_loss", "ent_coef_loss"),
+}
+"""What updates of the networks measure that the first iterations, which may be without any, do not"""
+
 REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
 
 
@@ -132,8 +138,8 @@ class Training:
     def _new_model(self) -> Any:
         values = self.config["hyperparameters"]
         normalize = normalize_arguments(values)
-        env = self.adapter if normalize is None else VecNormalize(self.adapter, **normalize)
         try:
+            env = self.adapter if normalize is None else VecNormalize(self.adapter, **normalize)
             return algorithm_class(self.config["algo"])(
                 env=env, seed=self.config["seed"], device="cpu", **algorithm_arguments(values)
             )
@@ -305,6 +311,7 @@ class Training:
             "distance": means["distance"],
             "success": float(safe_mean(self.model.ep_success_buffer)),
             **{term: float(safe_mean([e[term] for e in episodes])) for term in self.adapter.term_keys},
+            **dict.fromkeys(UPDATE_COLUMNS[type(self.model)]),
             **{key.removeprefix("train/"): _plain(v) for key, v in self.model.logger.name_to_value.items()},
         }
         self.model.logger.dump(self.model.num_timesteps)

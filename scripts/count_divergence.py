@@ -4,13 +4,10 @@ import dataclasses
 
 import gymnasium
 import numpy as np
-import tyro
 from gymnasium.vector import AutoresetMode
-from rich.console import Console
-from rich.table import Table
-from tqdm import tqdm
 
-from elastica_gym.envs import IDS
+from agents.checks import BadInputError, check_bounds, choose, require_extra, run_command
+from elastica_gym.envs import GOAL_IDS, IDS
 
 
 @dataclasses.dataclass
@@ -31,8 +28,13 @@ class Arguments:
 
 def count(env_id: str, arguments: Arguments) -> tuple[int, int, float]:
     """Return the divergences, the control steps they happened in, and the time step of the physics [s]."""
+    from tqdm import tqdm
+
     n = arguments.n_envs
-    env = gymnasium.make_vec(env_id, num_envs=n, autoreset_mode=AutoresetMode.SAME_STEP, sim_dt=arguments.sim_dt)
+    try:
+        env = gymnasium.make_vec(env_id, num_envs=n, autoreset_mode=AutoresetMode.SAME_STEP, sim_dt=arguments.sim_dt)
+    except ValueError as error:
+        raise BadInputError(f"The environment refuses its arguments: {error}") from error
     env.reset(seed=arguments.seed)
     rng = np.random.default_rng(arguments.seed)
     diverged, rounds = 0, -(-arguments.steps // n)
@@ -46,7 +48,15 @@ def count(env_id: str, arguments: Arguments) -> tuple[int, int, float]:
 
 def main() -> None:
     """Run the command line."""
+    require_extra("train")
+    import tyro
+    from rich.console import Console
+    from rich.table import Table
+
     arguments = tyro.cli(Arguments)
+    for env_id in arguments.env:
+        choose("environment", env_id, (*IDS, *GOAL_IDS))
+    check_bounds(dataclasses.asdict(arguments), {"steps": 1, "n_envs": 1, "seed": 0})
     table = Table(title="Divergence under random actions")
     for column in ("environment", "time step (s)", "control steps", "diverged", "per 10,000"):
         table.add_column(column)
@@ -57,4 +67,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run_command(main)

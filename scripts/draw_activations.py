@@ -5,16 +5,17 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import gymnasium
-import matplotlib
 import numpy as np
 
 import elastica_gym  # noqa: F401  registers the environments
+from agents.checks import require_extra, run_command
 from elastica_gym.muscles import DIRECTIONS, LEVELS, N_ACTIVATIONS, N_ARMS, N_FUNCTIONS
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ENV = "elastica_gym/OctopusReach-v0"
 SECONDS = 0.4
@@ -26,6 +27,7 @@ ARM = 1
 
 def main() -> None:
     """Draw the figure and write it."""
+    require_extra("train")
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     default = Path(__file__).parents[1] / "docs" / "images" / "activations.png"
     parser.add_argument("--output", type=Path, default=default, help="where to write the picture")
@@ -36,11 +38,14 @@ def main() -> None:
     print(f"wrote {output}")
 
 
-def draw() -> plt.Figure:
+def draw() -> "Figure":
     """Return a figure of an octopus at rest, and a moment after each activation of its second arm went to 1."""
+    from matplotlib.figure import Figure
+
     shapes, rolls = play()
     columns = [(level, i) for level, count in enumerate(LEVELS) for i in range(count)]
-    figure, axes = plt.subplots(len(DIRECTIONS), N_FUNCTIONS, figsize=(13, 4.6), layout="constrained")
+    figure = Figure(figsize=(13, 4.6), layout="constrained")
+    axes = figure.subplots(len(DIRECTIONS), N_FUNCTIONS)
     for row, (direction, across) in enumerate(zip(DIRECTIONS, (2, 1, None), strict=True)):
         for column, (level, i) in enumerate(columns):
             ax, number = axes[row, column], (row * N_ARMS + ARM) * N_FUNCTIONS + column
@@ -82,4 +87,4 @@ def play() -> tuple[np.ndarray, np.ndarray]:
 
 
 if __name__ == "__main__":
-    main()
+    run_command(main)

@@ -5,17 +5,18 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import matplotlib
 import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-from matplotlib.axes import Axes
-
+from agents.checks import require_extra, run_command
 from elastica_gym.bodies import snake
 from elastica_gym.bodies.body import Body
 from elastica_gym.muscles import DIRECTIONS, LEVELS, basis
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 COLORS = ("#eb7f26", "#2f7fb8", "#1f7a72")
 ABOUT = {"normal": "bends sideways", "binormal": "bends up and down", "tangent": "twists"}
@@ -23,6 +24,7 @@ ABOUT = {"normal": "bends sideways", "binormal": "bends up and down", "tangent":
 
 def main() -> None:
     """Draw the figure and write it."""
+    require_extra("train")
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     default = Path(__file__).parents[1] / "docs" / "images" / "muscles.png"
     parser.add_argument("--output", type=Path, default=default, help="where to write the picture")
@@ -33,10 +35,14 @@ def main() -> None:
     print(f"wrote {output}")
 
 
-def draw(body: Body) -> plt.Figure:
+def draw(body: Body) -> "Figure":
     """Return a figure of the couple along the body of every activation at 1."""
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
     muscles = body.muscles
-    figure, axes = plt.subplots(len(DIRECTIONS), 1, figsize=(9, 6.2), sharex=True, layout="constrained")
+    figure = Figure(figsize=(9, 6.2), layout="constrained")
+    axes = figure.subplots(len(DIRECTIONS), 1, sharex=True)
     for direction, ax in zip(DIRECTIONS, axes, strict=True):
         strength = 1e3 * np.repeat(muscles.magnitudes[direction], LEVELS)
         for name, (begin, end) in zip(body.arms, muscles.arms, strict=True):
@@ -52,12 +58,12 @@ def draw(body: Body) -> plt.Figure:
     axes[-1].set_xlim(0.0, 1.0)
     axes[-1].set_xlabel("place along the body, from tail (0) to head (1)")
     labels = [f"level {level}: {count} per half" for level, count in enumerate(LEVELS)]
-    lines = [plt.Line2D([], [], color=color) for color in COLORS]
+    lines = [Line2D([], [], color=color) for color in COLORS]
     figure.legend(lines, labels, loc="outside upper right", ncols=len(LEVELS), frameon=False, fontsize=9)
     return figure
 
 
-def draw_arm(ax: Axes, along: np.ndarray, functions: np.ndarray) -> None:
+def draw_arm(ax: "Axes", along: np.ndarray, functions: np.ndarray) -> None:
     """Draw the seven functions (7, m) of an arm at places (m,) along the body, a colour for each level."""
     for color, row in zip(np.repeat(COLORS, LEVELS), functions, strict=True):
         ax.plot(along, row, color=color, linewidth=1.4)
@@ -65,4 +71,4 @@ def draw_arm(ax: Axes, along: np.ndarray, functions: np.ndarray) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run_command(main)

@@ -13,19 +13,19 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import tyro
-from matplotlib.figure import Figure
 from scipy.stats import trim_mean
 
-from agents import cards
 from agents.checkpoints import write_atomically
-from agents.checks import BadInputError, choose, make_folder, run_command
+from agents.checks import BadInputError, choose, make_folder, require_extra, run_command
 from agents.run_files import GAIT
 from agents.seeds import TEST
 from elastica_gym.envs import IDS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ROOT = Path(__file__).resolve().parents[1]
 UNTRAINED = ("zero", "random", "scripted", "pretrained")
@@ -100,11 +100,14 @@ def cells_of(arguments: Arguments) -> list[Cell]:
 
 def pretrained() -> dict[str, str]:
     """Return the name of the pretrained policy of each environment that has one."""
+    from agents import cards
+
     return {cards.read_card(name)["environment"].rpartition("/")[2]: name for name in cards.names()}
 
 
 def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
     """Train what has to be, evaluate it, and write the cell's file."""
+    from agents import cards
     from agents.evaluate import evaluate
     from agents.gaits import load_gait
     from agents.policies import Policy, baseline, load_run
@@ -219,8 +222,10 @@ def as_markdown(found: dict[tuple[str, str], list[dict[str, Any]]], settings: di
     return "\n".join(lines) + "\n"
 
 
-def plot(found: dict[tuple[str, str], list[dict[str, Any]]]) -> Figure:
+def plot(found: dict[tuple[str, str], list[dict[str, Any]]]) -> "Figure":
     """Draw the interquartile mean and its interval of each policy, a row an environment, a column a metric."""
+    from matplotlib.figure import Figure
+
     envs = list(dict.fromkeys(env for env, _ in found))
     figure = Figure(figsize=(10, 0.6 + 1.7 * len(envs)), layout="constrained")
     axes = figure.subplots(len(envs), len(METRICS), squeeze=False)
@@ -242,6 +247,9 @@ def plot(found: dict[tuple[str, str], list[dict[str, Any]]]) -> Figure:
 
 def main() -> None:
     """Run the command line."""
+    require_extra("train")
+    import tyro
+
     arguments = tyro.cli(Arguments, description=__doc__)
     wanted = cells_of(arguments)
     cells = make_folder(arguments.out / "cells")

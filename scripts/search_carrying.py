@@ -9,16 +9,12 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-import cma
 import gymnasium
 import numpy as np
-import tyro
-import yaml
 from gymnasium.vector import AutoresetMode
-from tqdm import tqdm
 
 import elastica_gym  # noqa: F401  registers the environments
-from agents.checks import make_folder, run_command
+from agents.checks import make_folder, require_extra, run_command
 from elastica_gym.envs.handling import now
 from elastica_gym.envs.octopus_script import HOME, HOMEWARD, Gait, carry, fetch, see
 
@@ -58,6 +54,8 @@ def make(n: int, arguments: Arguments) -> Any:
 
 def grabs(arguments: Arguments) -> list[Any]:
     """Return the states of octopuses that have just grabbed their object."""
+    from tqdm import tqdm
+
     batch, found = make(arguments.grabs, arguments), []
     batch.reset(seed=arguments.seed)
     goes_on = np.ones(batch.num_envs, dtype=bool)
@@ -143,6 +141,12 @@ def actions_of(batch: Any, gaits: list[Gait]) -> np.ndarray:
 
 def main() -> None:
     """Run the command line."""
+    require_extra("train")
+    import cma
+    import tyro
+    import yaml
+    from tqdm import tqdm
+
     arguments = tyro.cli(Arguments, description=__doc__)
     make_folder(arguments.out.parent)
     begin = grabs(arguments)

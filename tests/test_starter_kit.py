@@ -25,7 +25,7 @@ def small(monkeypatch, tmp_path):
     return tmp_path
 
 
-def test_the_notebook_runs_from_top_to_bottom(small):
+def test_the_notebook_runs_from_top_to_bottom(offscreen, small):
     notebook = nbformat.read(SCRIPTS / "starter_kit.ipynb", as_version=4)
     assert not any(cell.get("outputs") for cell in notebook.cells)
     NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(SCRIPTS)}}).execute()

@@ -498,9 +498,10 @@ def _reset_mask(options: dict[str, Any], num_envs: int) -> Mask:
 
 
 def _checked_seeds(seeds: Sequence[int | None], num_envs: int) -> list[int | None]:
-    if not isinstance(seeds, (Sequence, np.ndarray)) or len(seeds) != num_envs:
-        raise ValueError(f"seed must be a whole number or {num_envs} of them, not {seeds!r}")
-    return [None if each is None else int(each) for each in seeds]
+    listed = list(seeds) if isinstance(seeds, Sequence) or np.ndim(seeds) == 1 else []
+    if len(listed) != num_envs or not all(each is None or isinstance(each, (int, np.integer)) for each in listed):
+        raise ValueError(f"seed must be a whole number or {num_envs} of them, any of which may be None, not {seeds!r}")
+    return [None if each is None else int(each) for each in listed]
 
 
 def _reasons(ends: dict[str, Mask]) -> NDArray[np.object_]:

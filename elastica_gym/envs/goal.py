@@ -35,7 +35,8 @@ and 10 s for the octopus.
 
 Arguments
 ---------
-Those of `elastica_gym.envs.BatchEnv`, but for ``weights``; ``spread`` as there.
+Those of `elastica_gym.envs.BatchEnv`, but for ``weights``, of which ``compute_reward`` would know nothing; ``spread``
+as there.
 
 Version history
 ---------------
@@ -135,12 +136,22 @@ def _space(flat: Any) -> Dict:
     return Dict({name: Box(low[name], high[name], dtype=np.float32) for name in low})
 
 
+def _refuse_weights(arguments: dict[str, Any]) -> None:
+    if "weights" in arguments:
+        raise ValueError("weights cannot be given where goals can be changed: the reward is 1 at the goal and else 0, "
+                         f"as compute_reward tells it, not {arguments['weights']!r}")  # fmt: skip
+
+
 class GoalBatchEnv(BatchEnv):
     """A batch of animals, each with a goal that can be changed afterwards.
 
     Made by ``gymnasium.make_vec("elastica_gym/<Name>ReachGoal-v0", num_envs=...)``. Observations are a dict of
     arrays; that of an episode's last step in ``final_obs`` is an array of dicts, as in Gymnasium's own batches.
     """
+
+    def __init__(self, task: Task, num_envs: int = 1, **kwargs: Any) -> None:
+        _refuse_weights(kwargs)
+        super().__init__(task, num_envs, **kwargs)
 
     def _make_spaces(self) -> None:
         super()._make_spaces()
@@ -170,6 +181,7 @@ class GoalEnv(SingleEnv):
     """One animal with a goal that can be changed afterwards; what ``gymnasium.make`` returns."""
 
     def __init__(self, task: Task, **kwargs: Any) -> None:
+        _refuse_weights(kwargs)
         super().__init__(task, **kwargs)
         self.observation_space = _space(self.batch.single_observation_space)
 

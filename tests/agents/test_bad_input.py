@@ -44,10 +44,15 @@ def test_unknown_hyperparameter():
     [
         (("--set", "learning_rate=fast"), "learning_rate must be a number or 'lin_<number>', got 'fast'"),
         (("--set", "gamma"), "Expected KEY=VALUE, got 'gamma'"),
+        (("--set", "gamma=["), "The value of gamma is not YAML: '['"),
+        (("--set", "n_timesteps=abc"), "n_timesteps must be a number of environment steps, got 'abc'"),
+        (("--set", "normalize=dict(foo=1)"), "Stable-Baselines3 refuses the hyperparameters: "),
         (("--set", "policy=Mlp"), "Stable-Baselines3 refuses the hyperparameters"),
         (("--set", "env_kwargs={sim_dt: 1.0}"), "The environment refuses its arguments: sim_dt"),
         (("--n-envs", "0"), "The environment refuses its arguments: num_envs"),
         (("--steps", "0"), "steps must be at least 1, got 0"),
+        (("--minutes", "0"), "minutes must be at least 0.001, got 0"),
+        (("--minutes", "nan"), "minutes must be at least 0.001, got nan"),
         (("--seed", "1000000"), "seed must be from 0 to 999999, got 1000000"),
         (("--evaluation-seed", "2000000"), "evaluation_seed must be from 1000000 to 1999999, got 2000000"),
     ],
@@ -56,6 +61,30 @@ def test_values_that_cannot_be(option, message, tmp_path):
     folder = tmp_path / "run"
     assert message in refused("agents.train", "--folder", folder, *option)
     assert not list(folder.glob("*"))  # the same folder can be used again
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (("--n-threads", 0), "n_threads must be at least 1, got 0"),
+        (("--seed", -1), "seed must be at least 0, got -1"),
+        (("--episodes", 0), "episodes must be at least 1, got 0"),
+    ],
+)
+def test_evaluations_that_cannot_be(option, message):
+    assert message in refused("agents.evaluate", "--policy", "zero", "--env", FORWARD, *option)
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (("--env", "elastica_gym/SnakeForwards-v0"), f"'elastica_gym/SnakeForwards-v0'; did you mean '{FORWARD}'"),
+        (("--env", FORWARD, "--n-envs", 0), "n_envs must be at least 1, got 0"),
+        (("--env", FORWARD, "--sim-dt", 1.0), "The environment refuses its arguments: sim_dt"),
+    ],
+)
+def test_divergences_that_cannot_be_counted(option, message):
+    assert message in refused("scripts.count_divergence", *option)
 
 
 def test_unknown_spread():
@@ -75,15 +104,43 @@ def test_unknown_policy():
     assert "either --run DIR, --pretrained NAME or --policy" in refused("agents.evaluate", "--env", FORWARD)
 
 
-def test_missing_or_old_packages(monkeypatch):
-    script = "import importlib.metadata as m, runpy, sys; sys.argv = ['train']; old = m.version\n" \
-        "def version(name):\n  if name == 'torch': raise m.PackageNotFoundError(name)\n  return old(name)\n" \
-        "m.version = version; runpy.run_module('agents.train', run_name='__main__')"  # fmt: skip
-    done = subprocess.run([sys.executable, "-c", script], env=environment(), cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 2
-    assert done.stderr == "error: torch is not installed: pip install --upgrade 'elastica-gym[train]'\n"
+WITHOUT = """
+import importlib.metadata, runpy, sys
+gone = {"cma", "matplotlib", "rich", "stable_baselines3", "torch", "tqdm", "tyro", "yaml"}
+class Gone:
+    def find_spec(self, name, *_):
+        if name.partition(".")[0] in gone:
+            raise ModuleNotFoundError(name)
+sys.meta_path.insert(0, Gone())
+there = importlib.metadata.version
+def version(name):
+    if name.replace("-", "_") in gone:
+        raise importlib.metadata.PackageNotFoundError(name)
+    return there(name)
+importlib.metadata.version = version
+sys.argv = sys.argv[1:]
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
+"""Runs a program where the packages of the extra train are not"""
 
-    monkeypatch.setattr(importlib.metadata, "version", lambda package: "0.25.1rc2")
+
+@pytest.mark.parametrize(
+    "program",
+    ["agents/train.py", "agents/evaluate.py", "agents/search.py", "scripts/score.py", "scripts/make_table.py",
+     "scripts/count_divergence.py", "scripts/search_carrying.py", "scripts/draw_muscles.py",
+     "scripts/draw_activations.py"],
+)  # fmt: skip
+def test_missing_packages(program):
+    command = [sys.executable, "-c", WITHOUT, str(ROOT / program)]
+    done = subprocess.run(command, env=environment(), cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("\n") == 1 and "error: stable-baselines3 is not installed, torch is" in done.stderr
+    assert done.stderr.endswith(": pip install --upgrade 'elastica-gym[train]'\n")
+
+
+def test_old_packages(monkeypatch):
+    there = importlib.metadata.version
+    monkeypatch.setattr(importlib.metadata, "version", lambda p: "0.25.1rc2" if p == "rerun-sdk" else there(p))
     lowest = checks.EXTRAS["viz"]["rerun-sdk"]
     message = f"rerun-sdk 0.25.1rc2 is older than {lowest}: pip install --upgrade 'elastica-gym[viz]'"
     assert checks.missing_extra("viz") == message

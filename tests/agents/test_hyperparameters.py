@@ -73,6 +73,7 @@ def test_lowest_versions_are_those_of_the_package():
     import tomllib
 
     groups = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    # those that are for users, and not for who works on the package
+    assert set(EXTRAS) == set(groups) - {"test", "bench"}
     for extra, packages in EXTRAS.items():
-        for package, lowest in packages.items():
-            assert f"{package}>={lowest}" in groups[extra]
+        assert {f"{package}>={lowest}" for package, lowest in packages.items()} == set(groups[extra])

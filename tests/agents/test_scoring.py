@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from agents import scoring
 from agents.scoring import GOALS, Samples, goals_held, score
+from elastica_gym.envs import handling
 
 DT = 0.01
 END = 12.0
@@ -309,3 +311,13 @@ def test_points_for_targets():
     four = np.ones((5, 8), dtype=bool)
     four[4] = False
     assert score({"default": everything, "arc": four, "anywhere": four})["general"] == 0.0
+
+
+def test_the_tasks_bounds_are_the_scorers():
+    """They are written twice, so that no reward decides on points."""
+    assert (handling.WRAPPED, handling.FEWEST, handling.GRABBING_TIME) == (
+        scoring.GRAB, scoring.GRAB_COUNT, scoring.GRAB_TIME)  # fmt: skip
+    assert (handling.KEPT, handling.SLACK_TIME) == (scoring.HOLD, scoring.LAPSE)
+    assert (handling.MOVED, handling.UPRIGHT) == (scoring.MOVE, scoring.UPRIGHT)
+    assert handling.CRAWLED == (scoring.CRAWL_HEAD, scoring.CRAWL_CENTRE)
+    assert (handling.AT_HOME, handling.BROUGHT) == (scoring.HOME, scoring.BESIDE)

@@ -85,9 +85,9 @@ def test_the_arms_strokes_are_mirror_images():
     assert np.abs(ahead[:, 0] - ahead[:, 1]).max() > 0.05 and np.abs(ahead - left).max() > 0.05
 
 
-def searched_for(folder, target, monkeypatch):
+def searched_for(folder, target, monkeypatch, *, evaluations=2000):
     """Search with an objective that is largest, 0, at a target in units of the parameters' spreads."""
-    config = {"env": FORWARD, "gait": None, "seed": 0, "evaluations": 2000, "minutes": None, "restarts": 1,
+    config = {"env": FORWARD, "gait": None, "seed": 0, "evaluations": evaluations, "minutes": None, "restarts": 1,
               "population": 20, "threads": 1, "evaluation_episodes": 1, "evaluation_seed": 0}  # fmt: skip
     spreads = np.array([parameter.spread for parameter in gaits.WAVE.parameters])
 
@@ -111,6 +111,11 @@ def test_the_search_finds_the_top_of_a_hill(tmp_path, monkeypatch):
     table = read_table(tmp_path / SEARCH)
     assert set(table["restart"]) >= {0.0, 1.0}
     assert np.all(np.diff(table["best_so_far"][np.isfinite(table["best_so_far"])]) >= 0.0)
+
+
+def test_the_table_ends_with_what_the_last_trial_found(tmp_path, monkeypatch):
+    search, _, _ = searched_for(tmp_path, np.full(7, 0.5), monkeypatch, evaluations=20)
+    assert read_table(tmp_path / SEARCH)["best_so_far"].tolist() == [pytest.approx(search.best, rel=1e-5)]
 
 
 def test_the_command_searches_and_its_gait_is_evaluated(tmp_path):

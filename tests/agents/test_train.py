@@ -11,6 +11,7 @@ from stable_baselines3.common.vec_env import VecNormalize
 from agents import hyperparameters, transfer
 from agents.cards import command_of, load_pretrained
 from agents.policies import load_run
+from agents.run_files import METRICS, read_table
 from agents.vec_env import make_batch_vec_env, observation_names
 from tests.agents.commands import FORWARD, REACH, SMALL, SMALL_EPISODES, SMALL_PPO, run
 
@@ -154,6 +155,15 @@ def test_sac_is_resumed_with_its_replay_buffer(tmp_path):
     assert _filled(folder) == 300
     after = load_run(folder)[0].model
     assert after.num_timesteps == 1024 and after._n_updates > before._n_updates > 100
+
+
+def test_metrics_of_sac_have_its_losses_though_it_begins_without(tmp_path):
+    folder = tmp_path / "run"
+    run("agents.train", "--algo", "sac", "--steps", 1024, "--folder", folder, *SMALL, "--evaluations", 0, "--set",
+        "learning_starts=600", "gradient_steps=1", "batch_size=16", "buffer_size=600", SMALL_EPISODES)  # fmt: skip
+    metrics = read_table(folder / METRICS)
+    for name in ("actor_loss", "critic_loss", "ent_coef", "n_updates", "learning_rate"):
+        assert np.isfinite(metrics[name]).tolist() == [False, True], name
 
 
 def _filled(folder) -> int:

@@ -2,7 +2,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-from elastica_gym.envs import IDS
+from elastica_gym.envs import GOAL_IDS, IDS
 
 SHORT = 0.5
 """Episode in most tests [s]: ten control steps"""
@@ -10,6 +10,12 @@ SHORT = 0.5
 
 @pytest.fixture(params=IDS)
 def env_id(request):
+    return request.param
+
+
+@pytest.fixture(params=(*IDS, *GOAL_IDS))
+def any_id(request):
+    """Also those whose observation is a dict: for tests that do not look into it."""
     return request.param
 
 
@@ -29,3 +35,10 @@ def make_vec():
 
 def random_actions(seed, steps, num_envs=1):
     return np.random.default_rng(seed).uniform(-1.0, 1.0, (steps, num_envs, 42)).astype(np.float32)
+
+
+def flat(observations):
+    """Observations as one array: those that are a dict side by side."""
+    if isinstance(observations, dict):
+        return np.concatenate(list(observations.values()), axis=-1)
+    return observations

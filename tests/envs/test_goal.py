@@ -75,3 +75,10 @@ def test_the_last_observation_of_an_episode_is_aside(goal_id, make_vec):
     for i, last in enumerate(info["final_obs"]):
         assert env.single_observation_space.contains(last)
         assert (last["desired_goal"] != now["desired_goal"][i]).any()
+
+
+def test_weights_are_refused(goal_id, make_vec):
+    """Or rewards of `step` would be others than those of `compute_reward`."""
+    for make in (gymnasium.make, make_vec):
+        with pytest.raises(ValueError, match=r"weights cannot be given .*, not {.reached.: 2"):
+            make(goal_id, weights={"reached": 2.0})

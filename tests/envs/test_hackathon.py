@@ -126,7 +126,7 @@ def test_what_cannot_be():
             env.step(wrong, 0.0)
 
 
-def test_the_video(tmp_path):
+def test_the_video(offscreen, tmp_path):
     env = Environment(0.1, TARGET, COLLECT_DATA_FOR_POSTPROCESSING=True)
     play(env, activation(0, 0), 2500)
     rollout = env.rollout()
