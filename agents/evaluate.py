@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from agents.policies import Policy
     from agents.vec_env import BatchVecEnv
 
-LOWEST = {"episodes": 1, "seed": 0, "n_threads": 1}
+LOWEST = {"episodes": 1, "seed": 0, "threads": 1}
 LARGEST_BATCH = 1024
 """Episodes that run side by side; more than these are run in turns."""
 
@@ -88,7 +88,7 @@ def evaluate(
 
     What an episode comes to depends on its seed alone, and not on how many run beside it.
     """
-    check_bounds({"episodes": episodes, "seed": seed, "n_threads": n_threads}, LOWEST)
+    check_bounds({"episodes": episodes, "seed": seed, "threads": n_threads}, LOWEST)
     parts = []
     for first in range(0, episodes, LARGEST_BATCH):
         seeds = [seed + i for i in range(first, min(first + LARGEST_BATCH, episodes))]
@@ -205,8 +205,8 @@ class EvaluateArguments:
     """Folder for a rerun recording of the first episode."""
     json: Path | None = None
     """File for the numbers as JSON."""
-    n_threads: int = 2
-    """Threads that step the physics."""
+    threads: int = 2
+    """Threads for the physics."""
 
 
 def main() -> None:
@@ -225,7 +225,7 @@ def main() -> None:
         env_id,
         episodes=arguments.episodes,
         seed=arguments.seed,
-        n_threads=arguments.n_threads,
+        n_threads=arguments.threads,
         env_kwargs=env_kwargs,
     )
     name = arguments.policy or arguments.pretrained or str(arguments.run)

@@ -101,7 +101,7 @@ def _check(env_id: str, targets: int, target_seed: int, n_threads: int, record: 
         raise BadInputError(f"{env_id} has no object to fetch from {', '.join(KINDS)} targets.")
     if not 1 <= targets <= MOST_TARGETS:
         raise BadInputError(f"targets must be from 1 to {MOST_TARGETS}, got {targets}")
-    check_bounds({"target_seed": target_seed, "n_threads": n_threads}, {"target_seed": 0, "n_threads": 1})
+    check_bounds({"target_seed": target_seed, "threads": n_threads}, {"target_seed": 0, "threads": 1})
     if record is not None and (message := missing_extra("viz")):
         raise BadInputError(f"A recording needs the extra viz: {message}")
 

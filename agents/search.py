@@ -16,7 +16,7 @@ from agents.checks import (
     run_command,
 )
 from agents.run_files import GAIT, SEARCH
-from agents.seeds import VALIDATION
+from agents.seeds import TRAINING, VALIDATION, check_seeds
 
 
 @dataclasses.dataclass
@@ -91,6 +91,8 @@ def _started(arguments: SearchArguments) -> tuple[Path, dict[str, Any]]:
     if arguments.evaluations is arguments.minutes is None:
         config["evaluations"] = DEFAULT_EVALUATIONS
     check_bounds(config, LOWEST)
+    check_seeds("seed", config["seed"], 1, TRAINING)
+    check_seeds("evaluation_seed", config["evaluation_seed"], config["evaluation_episodes"], VALIDATION)
     name = f"search-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
     folder = arguments.folder or arguments.out / arguments.env.rpartition("/")[2] / name
     if (folder / SEARCH).exists():

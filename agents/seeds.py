@@ -7,6 +7,8 @@ differ by less than their number of environments share some of the generators of
 
 import numpy as np
 
+from agents.checks import BadInputError
+
 TRAINING = range(0, 1_000_000)
 """Of environments that are trained in"""
 VALIDATION = range(1_000_000, 2_000_000)
@@ -15,6 +17,14 @@ TEST = range(2_000_000, 3_000_000)
 """Of evaluations whose numbers are published, by which nothing is chosen"""
 SCORED = 1 << 63
 """The bit that all seeds have with which `scripts/score.py` draws its targets"""
+
+
+def check_seeds(name: str, first: int, count: int, allowed: range) -> None:
+    """Make sure that `count` seeds from the first on are all allowed ones."""
+    last = allowed.stop - count
+    if not allowed.start <= first <= last:
+        raise BadInputError(f"{name} must be from {allowed.start} to {last}, got {first}: "
+                            f"{count} seeds from there on are used")  # fmt: skip
 
 
 def target_seeds(target_seed: int, stream: int, n: int) -> list[int]:

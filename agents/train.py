@@ -18,7 +18,7 @@ from agents.checks import (
     run_command,
 )
 from agents.run_files import BEST
-from agents.seeds import TRAINING, VALIDATION
+from agents.seeds import TRAINING, VALIDATION, check_seeds
 
 VERSIONS = ("elastica-gym", "stable-baselines3", "torch", "numpy", "numba", "gymnasium")
 
@@ -170,9 +170,10 @@ def _check(config: dict[str, Any]) -> None:
     check_bounds(config, lowest)
     if config.get("imitate") and config["algo"] != "ppo":
         raise BadInputError(f"imitate must be 0 for {config['algo']}, got {config['imitate']}: only ppo can imitate")
-    for key, allowed in (("seed", TRAINING), ("evaluation_seed", VALIDATION)):
-        if config[key] not in allowed:
-            raise BadInputError(f"{key} must be from {allowed.start} to {allowed.stop - 1}, got {config[key]}")
+    n_envs = config["hyperparameters"].get("n_envs", 1)
+    # what is no number the environment refuses
+    check_seeds("seed", config["seed"], n_envs if isinstance(n_envs, int) else 1, TRAINING)
+    check_seeds("evaluation_seed", config["evaluation_seed"], config["evaluation_episodes"], VALIDATION)
 
 
 def _new_folder(arguments: TrainArguments) -> Path:

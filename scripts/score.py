@@ -29,8 +29,8 @@ class Arguments:
     """Folder for rerun recordings: of the first episode on each kind of target."""
     env: str = "elastica_gym/OctopusFetch-v0"
     """Environment id."""
-    n_threads: int = 2
-    """Threads that step the physics."""
+    threads: int = 2
+    """Threads for the physics."""
 
 
 def main() -> int:
@@ -46,7 +46,7 @@ def main() -> int:
             make_folder(folder)
     result = judge(
         arguments.policy, arguments.env, targets=arguments.targets, target_seed=arguments.target_seed,
-        record=arguments.record, n_threads=arguments.n_threads,
+        record=arguments.record, n_threads=arguments.threads,
     )  # fmt: skip
     print_score(result)
     if arguments.json is not None:

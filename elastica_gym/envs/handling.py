@@ -66,8 +66,8 @@ class Handling(NamedTuple):
     """Angle of its axis from upright [rad]"""
     head_way: Array
     """Furthest that the head has been from home, which is where it starts but in OctopusReturn [m]"""
-    centre_way: Array
-    """Furthest that the centre of mass has been from there [m]"""
+    crawled: Array
+    """1 from when both head and centre of mass have been `CRAWLED` from there, at the same moment, else 0"""
 
 
 def handling(progress: Array) -> Handling:
@@ -88,6 +88,8 @@ def follow(situation: Situation, state: State) -> Array:
     keeps = (old.grabbed == 1.0) & (slack * s.control_dt <= SLACK_TIME + 1e-9)
     grabbed = np.where(begins, span >= KEPT, grabs | keeps)
     base_x, base_z = held.base[:, 0], held.base[:, 2]
+    head_away = _away(s.pose.head, s.goal[:, 0], s.goal[:, 1])
+    crawls = (head_away >= CRAWLED[0]) & (_away(s.pose.centre, s.goal[:, 2], s.goal[:, 3]) >= CRAWLED[1])
     carried = held.touching.any(axis=1) & (held.tilt <= UPRIGHT) & ~begins
     return np.stack(Handling(
         reach=_reach(held.gaps, arm_elements(s.body)), span=span,
@@ -95,8 +97,7 @@ def follow(situation: Situation, state: State) -> Array:
         grabbed=grabbed.astype(np.float64), base_x=base_x, base_z=base_z, tilt=held.tilt,
         moved_x=old.moved_x + np.where(carried, base_x - old.base_x, 0.0),
         moved_z=old.moved_z + np.where(carried, base_z - old.base_z, 0.0),
-        head_way=np.maximum(old.head_way, _away(s.pose.head, s.goal[:, 0], s.goal[:, 1])),
-        centre_way=np.maximum(old.centre_way, _away(s.pose.centre, s.goal[:, 2], s.goal[:, 3])),
+        head_way=np.maximum(old.head_way, head_away), crawled=np.maximum(old.crawled, crawls),
     ), axis=1)  # fmt: skip
 
 
@@ -224,9 +225,8 @@ def is_at_home(situation: Situation) -> Mask:
 
 
 def has_crawled(situation: Situation) -> Mask:
-    """Return whether the head and the centre of mass have been far enough from their starts, (B,) bool."""
-    h, (head, centre) = now(situation), CRAWLED
-    return (h.head_way >= head) & (h.centre_way >= centre)
+    """Return whether the head and the centre of mass have been far enough from their starts at once, (B,) bool."""
+    return now(situation).crawled == 1.0
 
 
 def has_moved(situation: Situation) -> Mask:

@@ -41,8 +41,11 @@ with y up. At rest the arms point half to the left.
 | 161-202 | activation that each muscle has reached, in the order of the actions | 1 | -1 to 1 |
 | 203-204 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
 | 205 | part of the episode that is left | 1 | 0 to 1 |
-| 206-207 | direction to the object, or once that is grabbed home: forward and right component | 1 | -1 to 1 |
+| 206-207 | direction to go (below): forward and right component of a unit vector | 1 | -1 to 1 |
 | 208-209 | way from the head to where it was at the start, its home: forward and right | body length | -4 to 4 |
+
+The direction to go is to the object; once that is grabbed, it is home, or away from there until the animal has
+crawled as far as success asks for.
 
 Rewards
 -------
@@ -65,11 +68,11 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 
 These are the terms of OctopusMove, OctopusGrab and OctopusReturn, where they are explained. The object is
 grabbed when an arm spans 200 degrees or more around its axis at the ends of all control steps in 0.5 s, and let
-go when no arm has spanned 150 degrees for more than 0.2 s. Success is when all of this is so: the head has been
-0.2 m and the centre of mass 0.1 m from where it was at the start; the object has been moved by 0.1 m while it
+go when no arm has spanned 150 degrees for more than 0.2 s. Success is when all of this is so: at one moment the head
+has been 0.2 m and the centre of mass 0.1 m from where it was at the start; the object has been moved by 0.1 m while it
 stood and was touched; it is held; the head is within 0.1 m of home, and the object within 0.3 m of the head.
-``scripts/score.py`` asks for more: that the surfaces of head and object have been within 0.05 m, that head and
-centre of mass have crawled so far at the same moment, and that the arm that has grabbed is the one that holds.
+``scripts/score.py`` asks for more: that the surfaces of head and object have been within 0.05 m, and that the arm
+that has grabbed is the one that holds.
 All but the last six terms are differences of what is so far, so doing a thing again earns nothing. The info
 also has ``distance``, by how much the object is nearer to home than at the start [m]; ``is_success``; and
 ``termination_reason``: empty, ``success``, ``time_limit``, ``toppled``, ``fallen`` or ``diverged``.
@@ -127,8 +130,9 @@ from .task import Mask, Situation, effort, toppled, way_to_goal
 
 
 def see_goal(situation: Situation) -> Array:
-    """Return the direction to the object, or home once it is grabbed, and the way home, forward and right, (B, 4)."""
+    """Return the direction to go and the way home, forward and right, (B, 4)."""
     there, back = np.stack(direction_to_object(situation)), np.stack(direction_home(situation))
+    back = np.where(has_crawled(situation), back, -back)
     return np.stack([*np.where(now(situation).grabbed == 1.0, back, there), *way_to_goal(situation)], axis=1)
 
 

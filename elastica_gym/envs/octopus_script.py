@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .batch import BatchEnv
 
 NODES, TOUCH, THING, AXIS = slice(0, 33), slice(137, 148), slice(148, 151), slice(151, 154)
-VELOCITIES, LEVELS, HOME = slice(33, 66), slice(161, 203), slice(208, 210)
+VELOCITIES, LEVELS, GOAL, HOME = slice(33, 66), slice(161, 203), slice(206, 208), slice(208, 210)
 """Where observations have what the script sees, see `elastica_gym.envs.octopus_fetch`"""
 HEAD_NODE = 5
 """Which of the nodes seen is the head's centre"""
@@ -61,8 +61,6 @@ REACH = ((0.1, 0.4), (-0.15, 0.2))
 RAMP = 0.04
 """By how much the activation that bends it is ahead of what the muscles have reached: with more, it fells what it
 should hold"""
-CRAWLED = 0.22
-"""Distance of the head from home that will do [m]: a bit more than is asked for, so that the body has come along"""
 LEANING = 0.05
 """Tilt of the object above which the arm that bends around it yields until it stands again [rad]"""
 EMPTY = (0.9, 1)
@@ -139,8 +137,8 @@ class Sight(NamedTuple):
     """Angle of the object's axis from upright [rad], (B,)"""
     speed: Array
     """Of the fastest node [m/s], (B,)"""
-    home: Array
-    """Way from the head to its home, ahead and to the right [m], (B, 2)"""
+    goal: Array
+    """Way to carry the object, ahead and to the right [m], (B, 2): where to go, as far as it is home"""
 
 
 def see(observations: NDArray[np.float32]) -> Sight:
@@ -154,7 +152,7 @@ def see(observations: NDArray[np.float32]) -> Sight:
     return Sight(
         ahead=base[:, 0], right=base[:, 2], gap=_gap(from_head, base), touched=np.sum(o[:, TOUCH] > 0.0, axis=1),
         levels=o[:, LEVELS], tilt=np.arccos(np.clip(o[:, AXIS][:, 1], -1.0, 1.0)), speed=speeds.max(axis=1),
-        home=o[:, HOME],
+        goal=o[:, GOAL] * np.linalg.norm(o[:, HOME], axis=1, keepdims=True),
     )  # fmt: skip
 
 
@@ -188,7 +186,7 @@ def act(sight: Sight, time: Array, grabbed: Mask, furthest: Array) -> Array:
     grabbed : Mask
         Whether an arm has grabbed the object, (B,) bool.
     furthest : Array
-        How far the head has been from home [m], (B,). Until that is `CRAWLED`, it carries the object away from there.
+        How far the head has been from home [m], (B,).
     """
     ahead, right = sight.ahead, sight.right
     bearing = np.arctan2(right, ahead)
@@ -200,7 +198,7 @@ def act(sight: Sight, time: Array, grabbed: Mask, furthest: Array) -> Array:
     for chosen, play in (
         (is_close & (right > BEHIND), turn(sight, time, arm)),
         (is_close & (right > BEHIND) & _is_in_the_bend(sight, arm), bend(sight, arm)),
-        (grabbed, carry(np.where(furthest >= CRAWLED, 1.0, -1.0)[:, None] * sight.home, time, arm, furthest >= FAR)),
+        (grabbed, carry(sight.goal, time, arm, furthest >= FAR)),
     ):
         actions[chosen] = play[chosen]
     return actions

@@ -53,8 +53,9 @@ def test_unknown_hyperparameter():
         (("--steps", "0"), "steps must be at least 1, got 0"),
         (("--minutes", "0"), "minutes must be at least 0.001, got 0"),
         (("--minutes", "nan"), "minutes must be at least 0.001, got nan"),
-        (("--seed", "1000000"), "seed must be from 0 to 999999, got 1000000"),
-        (("--evaluation-seed", "2000000"), "evaluation_seed must be from 1000000 to 1999999, got 2000000"),
+        (("--seed", "1000000"), "seed must be from 0 to 999936, got 1000000: 64 seeds"),
+        (("--seed", "999999", "--n-envs", "2"), "seed must be from 0 to 999998, got 999999"),
+        (("--evaluation-seed", "1999981"), "evaluation_seed must be from 1000000 to 1999980, got 1999981: 20 seeds"),
     ],
 )
 def test_values_that_cannot_be(option, message, tmp_path):
@@ -66,7 +67,7 @@ def test_values_that_cannot_be(option, message, tmp_path):
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        (("--n-threads", 0), "n_threads must be at least 1, got 0"),
+        (("--threads", 0), "threads must be at least 1, got 0"),
         (("--seed", -1), "seed must be at least 0, got -1"),
         (("--episodes", 0), "episodes must be at least 1, got 0"),
     ],

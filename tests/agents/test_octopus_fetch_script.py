@@ -10,7 +10,8 @@ from gymnasium.vector import AutoresetMode
 import agents
 from agents.policy_file import FilePolicy
 from elastica_gym.envs import octopus_script
-from elastica_gym.envs.handling import now
+from elastica_gym.envs.handling import Handling, now
+from elastica_gym.envs.octopus_fetch import see_goal
 
 POLICY = Path(agents.__file__).parent / "pretrained" / "octopus_fetch_script.py"
 FETCH = "elastica_gym/OctopusFetch-v0"
@@ -51,14 +52,26 @@ def test_the_file_tells_by_the_goal_whether_it_holds_the_object(make):
     assert (now(batch.situation()).grabbed == 1.0).all()
     policy = FilePolicy(POLICY)
     policy.reset([0, 0])
-    # nearer to home, it would carry the object away first
-    away = np.linalg.norm(observations[:, 208:210], axis=1)
-    far = away >= octopus_script.CRAWLED
-    assert far.any()
-    sight = octopus_script.see(observations)
-    arm, hurries = np.where(sight.ahead >= 0.0, 1, 0), away >= octopus_script.FAR
-    carrying = octopus_script.carry(sight.home, np.zeros(2), arm, hurries)
-    np.testing.assert_allclose(policy(observations, batch)[far], carrying[far], atol=1e-6)
+    sight, home = octopus_script.see(observations), observations[:, 208:210].astype(float)
+    np.testing.assert_allclose(sight.goal, home, atol=1e-6)
+    arm, hurries = np.where(sight.ahead >= 0.0, 1, 0), np.linalg.norm(home, axis=1) >= octopus_script.FAR
+    carrying = octopus_script.carry(home, np.zeros(2), arm, hurries)
+    np.testing.assert_allclose(policy(observations, batch), carrying, atol=1e-6)
+
+
+def test_it_carries_the_object_away_until_it_has_crawled(make):
+    batch = make(spread="arc")
+    batch.reset(seed=[3, 4])
+    for _ in range(20):
+        batch.step(octopus_script.fetch(batch))
+    names = {name: column for column, name in enumerate(Handling._fields)}
+    home = batch.observations[:, 208:210].astype(float)
+    assert np.linalg.norm(home, axis=1).min() > 0.0
+    for grabbed, crawled, sign in ((1.0, 0.0, -1.0), (1.0, 1.0, 1.0)):
+        batch.progress[:, names["grabbed"]], batch.progress[:, names["crawled"]] = grabbed, crawled
+        observations = batch.observations
+        observations[:, 206:210] = see_goal(batch.situation())
+        np.testing.assert_allclose(octopus_script.see(observations).goal, sign * home, atol=1e-6)
 
 
 def test_what_the_script_sees_is_where_things_are(make):
