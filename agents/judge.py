@@ -86,9 +86,9 @@ def print_score(result: dict[str, Any]) -> None:
     for goal, most in POINTS.items():
         counts = [f"{result['held'][kind][goal]} of {n[kind]}" for kind in KINDS]
         table.add_row(goal, f"{result[goal]:g}", f"{most:g}", *counts)
-    table.add_row("general", f"{result['general']:.1f}", f"{2.0 * GENERAL:g}", *[""] * len(KINDS))
+    table.add_row("general", f"{result['general']:.4g}", f"{2.0 * GENERAL:g}", *[""] * len(KINDS))
     table.add_section()
-    table.add_row("total", f"{result['total']:.1f}", f"{sum(POINTS.values()) + 2.0 * GENERAL:g}", *[""] * len(KINDS))
+    table.add_row("total", f"{result['total']:.4g}", f"{sum(POINTS.values()) + 2.0 * GENERAL:g}", *[""] * len(KINDS))
     console.print(table)
 
 
