@@ -298,8 +298,8 @@ def timed(call: Callable[[], object]) -> float:
 # environments
 
 
-def measure_environments(env_id: str, n_pairs: int, num_envs: int = 64, n_steps: int = 20) -> dict[str, Any]:
-    """Time environment steps of a batch on one thread and on two, random actions.
+def measure_environments(env_id: str, n_pairs: int, num_envs: int = 64, n_steps: int = 2) -> dict[str, Any]:
+    """Time environment steps of a batch on one thread and on two, random actions, as pairs of the best slices of each.
 
     And of half the batch in each of two processes that share nothing: two threads cannot do better than they. What
     they fall short of twice one is what the machine withholds, such as the second half of a core that has two.
@@ -319,7 +319,10 @@ def measure_environments(env_id: str, n_pairs: int, num_envs: int = 64, n_steps:
         ways = [lambda: run_batch(one_thread, n_steps), lambda: run_batch(two_threads, n_steps), run_processes]
         for way in ways:
             way()
-        times = [[timed(way) for way in ways] for _ in range(n_pairs)]
+        times = []
+        for _ in range(n_pairs):
+            slices = [[timed(way) for way in ways] for _ in range(SLICES)]
+            times.append([min(column) for column in zip(*slices, strict=True)])
     one, two, _ = (num_envs * n_steps / statistics.median(column) for column in zip(*times, strict=True))
     return {
         "id": env_id, "environments": num_envs, "sim_dt": mine.sim_dt, "substeps": mine.n_substeps,
