@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from importlib.metadata import version
 from multiprocessing import get_context
@@ -185,15 +185,15 @@ def measure_rods(n_rods: int, n_pairs: int) -> dict[str, Any]:
         simulator, rods = many_rods.rows(lib, n_rods)
         simulator.finalize()
         many_rods.shake(rods)
-        runs.append((lambda lib=lib, simulator=simulator, n_steps=n_steps: lib.integrate(
-            lib.PositionVerlet(), simulator, n_steps * many_rods.DT, n_steps, progress_bar=False), n_steps))
-    for run, _ in runs:
+        runs.append(lambda lib=lib, simulator=simulator, n_steps=n_steps: lib.integrate(
+            lib.PositionVerlet(), simulator, n_steps * many_rods.DT, n_steps, progress_bar=False))
+    for run in runs:
         run()
     ours, theirs = [], []
     for _ in range(n_pairs):
-        slices = [[timed(run) / n_steps for run, n_steps in runs] for _ in range(SLICES)]
-        for column, best in zip((ours, theirs), (min(each) for each in zip(*slices, strict=True)), strict=True):
-            column.append(best)
+        best_ours, best_theirs = best_slices(runs)
+        ours.append(best_ours / LIBRARY_STEPS_OURS)
+        theirs.append(best_theirs / LIBRARY_STEPS_THEIRS)
     ratios = [b / a for a, b in zip(ours, theirs, strict=True)]
     return {
         "scene": "rods, joined and touching", "rods": n_rods, "elements": many_rods.N_ELEMENTS * n_rods,
@@ -243,8 +243,7 @@ def measure_own_force(n_pairs: int) -> dict[str, float]:
         simulator.finalize()
         runs.append(lambda simulator=simulator: library.integrate(
             library.PositionVerlet(), simulator, STEPS_OURS * many_rods.DT, STEPS_OURS, progress_bar=False))
-    slices = [[timed(run) / STEPS_OURS for run in runs] for _ in range(SLICES * n_pairs)]
-    without, with_force = (1e6 * min(column) for column in zip(*slices, strict=True))
+    without, with_force = (1e6 * best / STEPS_OURS for best in best_slices(runs, SLICES * n_pairs))
     return {"without_us": without, "with_us": with_force, "added_us": with_force - without, "limit_us": OWN_FORCE_LIMIT}
 
 
@@ -257,12 +256,10 @@ def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_p
     advance(model, state, control, 0, 1, dt, round(WARM_UP / dt))
     twin.set_state(oracle.motions(model, state), float(state.time[0]))
     twin.advance(steps_theirs)
+    runs = [lambda: twin.advance(steps_theirs), lambda: advance(model, state, control, 0, 1, dt, STEPS_OURS)]
     ours, theirs = [], []
     for _ in range(n_pairs):
-        slices = [(timed(lambda: twin.advance(steps_theirs)),
-                   timed(lambda: advance(model, state, control, 0, 1, dt, STEPS_OURS)))
-                  for _ in range(SLICES)]  # fmt: skip
-        best_theirs, best_ours = (min(column) for column in zip(*slices, strict=True))
+        best_theirs, best_ours = best_slices(runs)
         theirs.append(best_theirs / steps_theirs)
         ours.append(best_ours / STEPS_OURS)
     ratios = [b / a for a, b in zip(ours, theirs, strict=True)]
@@ -286,6 +283,12 @@ def require_agreement(name: str, rod: Any, dt: float, allowed: float, **loads: A
         sys.exit(f"the programs do not agree on {name} of {rod.n_elements} elements: {distance:.2g} m after 100 steps "
                  f"(1e-9 allowed), {step:.2g} in a step from a random state ({allowed:.2g} allowed)")  # fmt: skip
     return {"metres_after_100_steps": distance, "relative_in_one_step": step}
+
+
+def best_slices(runs: Sequence[Callable[[], object]], n_slices: int = SLICES) -> list[float]:
+    """Return the least time of each run [s], of so many slices of all of them in turn."""
+    slices = [[timed(run) for run in runs] for _ in range(n_slices)]
+    return [min(column) for column in zip(*slices, strict=True)]
 
 
 def timed(call: Callable[[], object]) -> float:
@@ -319,10 +322,7 @@ def measure_environments(env_id: str, n_pairs: int, num_envs: int = 64, n_steps:
         ways = [lambda: run_batch(one_thread, n_steps), lambda: run_batch(two_threads, n_steps), run_processes]
         for way in ways:
             way()
-        times = []
-        for _ in range(n_pairs):
-            slices = [[timed(way) for way in ways] for _ in range(SLICES)]
-            times.append([min(column) for column in zip(*slices, strict=True)])
+        times = [best_slices(ways) for _ in range(n_pairs)]
     one, two, _ = (num_envs * n_steps / statistics.median(column) for column in zip(*times, strict=True))
     return {
         "id": env_id, "environments": num_envs, "sim_dt": mine.sim_dt, "substeps": mine.n_substeps,
