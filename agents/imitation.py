@@ -73,8 +73,9 @@ def imitate(
             observations, *_ = adapter.step_wait()
             model.num_timesteps += adapter.num_envs
             show((number + step / per_round) / ROUNDS, numbers)
-        _learn_scale(model, np.concatenate(seen), new=np.concatenate(seen[-per_round:]))
-        data = [torch.as_tensor(each) for each in (_normalized(model, np.concatenate(seen)), np.concatenate(wanted))]
+        all_seen = np.concatenate(seen)
+        _learn_scale(model, all_seen, n_new=per_round * adapter.num_envs)
+        data = [torch.as_tensor(each) for each in (_normalized(model, all_seen), np.concatenate(wanted))]
         for rate in np.geomspace(*LEARNING_RATES, EPOCHS if number < ROUNDS - 1 else LAST_EPOCHS):
             optimizer.param_groups[0]["lr"] = rate
             numbers = {"mean square difference": _fit(model.policy, optimizer, *data)}
@@ -89,13 +90,13 @@ def _played(model: Any, observations: np.ndarray, scripted: np.ndarray) -> np.nd
     return np.where(np.arange(len(own))[:, None] % SCRIPTED == 0, scripted, own)
 
 
-def _learn_scale(model: Any, seen: np.ndarray, new: np.ndarray) -> None:
-    """Take the scale of what is seen from all observations so far, or add the new ones to the statistics there are."""
+def _learn_scale(model: Any, seen: np.ndarray, n_new: int) -> None:
+    """Take the scale of what is seen from all observations so far, or add the last ones to the statistics there are."""
     statistics, extractor = model.get_vec_normalize_env(), model.policy.features_extractor
     if isinstance(extractor, Rhythms):
         extractor.fit(torch.as_tensor(seen))
     elif statistics is not None and statistics.norm_obs:
-        statistics.obs_rms.update(new)
+        statistics.obs_rms.update(seen[-n_new:])
 
 
 @contextmanager

@@ -153,8 +153,9 @@ def load_run(run: Path) -> tuple[TrainedPolicy, dict[str, Any]]:
     if folder is None:
         raise BadInputError(f"The run {run} has neither a model.zip nor a whole checkpoint.")
     model = load_model(folder / "model.zip", config["algo"])
-    has_normalization = (normalize_arguments(config["hyperparameters"]) or {"norm_obs": False}).get("norm_obs", True)
-    normalization = load_normalization(folder / "vecnormalize.pkl") if has_normalization else None
+    normalize = normalize_arguments(config["hyperparameters"])
+    sees_scaled = normalize is not None and normalize.get("norm_obs", True)
+    normalization = load_normalization(folder / "vecnormalize.pkl") if sees_scaled else None
     return TrainedPolicy(model, normalization), config
 
 

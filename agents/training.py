@@ -75,8 +75,9 @@ class Budget:
 
     def fraction(self, steps_done: int, *, seconds_ahead: float = 0.0) -> float:
         """Return how much of the budget is spent, from 0 to 1, or would be in `seconds_ahead`."""
-        counted = max(0, steps_done - self.free_steps)
-        by_steps = 0.0 if self.steps is None else counted / self.steps if self.steps else 1.0
+        by_steps = 0.0
+        if self.steps is not None:
+            by_steps = (steps_done - self.free_steps) / self.steps if self.steps else 1.0
         by_time = 0.0 if self.minutes is None else (self.seconds + seconds_ahead) / (60.0 * self.minutes)
         return min(1.0, max(by_steps, by_time))
 

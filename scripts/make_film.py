@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import elastica_gym  # noqa: F401  (registers the environments)
-from agents.checks import BadInputError, make_folder, require_extra, run_command
+from agents.checks import check_bounds, make_folder, require_extra, run_command
 from agents.seeds import TEST
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
@@ -41,8 +41,7 @@ def main() -> None:
     from elastica_gym.viz import render_frames, run_rollout
 
     arguments = tyro.cli(FilmArguments)
-    if arguments.every < 1:
-        raise BadInputError(f"every must be at least 1, got {arguments.every}")
+    check_bounds(dataclasses.asdict(arguments), {"every": 1, "seed": 0})
     policy, card = load_pretrained(arguments.name)
     rollout = run_rollout(card["environment"], policy, seed=arguments.seed, **card["env_kwargs"])
     moments = range(0, len(rollout.step), arguments.every)
