@@ -108,7 +108,7 @@ class Gait(NamedTuple):
     """What is added to them per angle from the course to the way [1/rad], of up to 1 rad"""
 
 
-HOMEWARD = Gait(-1.95, 2.0, 0.272, (
+HOMEWARD = Gait(-2.25, 2.0, 0.272, (
     (1.09, 1.26, -0.93, -0.99, 1.01, -0.04, 0.92, -1.55, -1.31),
     (-1.43, 3.46, 0.43, -1.73, -2.12, -2.95, 1.02, -0.33, 0.49),
     (-2.34, 0.84, -0.5, 0.1, -2.02, 1.34, 0.11, 0.34, 0.1),
