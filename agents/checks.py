@@ -2,6 +2,7 @@
 
 import difflib
 import importlib.metadata
+import math
 import os
 import re
 import sys
@@ -33,12 +34,18 @@ def choose(what: str, name: str, valid: Collection[str]) -> str:
     raise BadInputError(f"Unknown {what} {name!r}{hint} Valid: {', '.join(there)}.")
 
 
+HIGHEST = {"threads": 4096}
+"""Of arguments that must not be more wherever they are taken"""
+
+
 def check_bounds(values: Mapping[str, Any], lowest: Mapping[str, float]) -> None:
-    """Raise ``BadInputError`` for the first of `values` below its `lowest`; those that are None are not looked at."""
+    """Raise ``BadInputError`` for the first of `values` out of its bounds; those that are None are not looked at."""
     for key, bound in lowest.items():
         # so written, a NaN is refused
         if (value := values.get(key)) is not None and not value >= bound:
             raise BadInputError(f"{key} must be at least {bound}, got {value}")
+        if value is not None and value > (most := HIGHEST.get(key, math.inf)):
+            raise BadInputError(f"{key} must be at most {most}, got {value}")
 
 
 def missing_extra(extra: str) -> str | None:

@@ -177,10 +177,8 @@ class Training:
         return load_model(checkpoint / "model.zip", self.config["algo"], env=env, force_reset=False)
 
     def _save_files(self, folder: Path) -> None:
-        self.model.save(folder / "model.zip")
+        self._save_policy(folder)
         normalize = self.model.get_vec_normalize_env()
-        if normalize is not None:
-            normalize.save(folder / "vecnormalize.pkl")
         state = {
             "environment": self.adapter.get_state(),
             "discounted_returns": None if normalize is None else normalize.returns,

@@ -68,6 +68,7 @@ def test_values_that_cannot_be(option, message, tmp_path):
     ("option", "message"),
     [
         (("--threads", 0), "threads must be at least 1, got 0"),
+        (("--threads", 4097), "threads must be at most 4096, got 4097"),
         (("--seed", -1), "seed must be at least 0, got -1"),
         (("--episodes", 0), "episodes must be at least 1, got 0"),
     ],

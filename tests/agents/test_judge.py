@@ -323,6 +323,7 @@ def test_a_policy_that_breaks_late_is_worth_nothing(write):
         (dict(targets=0), "targets must be from 1 to 1000, got 0"),
         (dict(target_seed=-1), "target_seed must be at least 0, got -1"),
         (dict(n_threads=0), "threads must be at least 1, got 0"),
+        (dict(n_threads=5000), "threads must be at most 4096, got 5000"),
     ],
 )
 def test_what_cannot_be_judged(write, changed, message):
