@@ -30,6 +30,8 @@ CRITIC_UPDATES = 6
 """First updates after imitation that leave the actor as it is"""
 LEARNING_RATES = (1e-3, 1e-4)
 """Of Adam, at the beginning of each round's passes and at their end"""
+GOING_ON = 0.1
+"""Part of these rates for networks that do the task already, and should not lose it to the first few steps"""
 
 
 def imitate(
@@ -39,11 +41,13 @@ def imitate(
     steps: int,
     show: Callable[[float, dict[str, float]], None],
     after_round: Callable[[float], bool],
+    goes_on: bool = False,
 ) -> None:
     """Fit the mean actions of a model to those of the scripted policy of its task.
 
     In the first round the script acts, later it does in some environments and the model in the others. The statistics
-    by which observations are normalised, if they are, become those of all that has been seen.
+    by which observations are normalised, if they are, become those of all that has been seen. A model that goes on acts
+    from the first round on, keeps its statistics, and learns more slowly.
 
     Parameters
     ----------
@@ -57,8 +61,11 @@ def imitate(
         Called often, with the part that is done and, once there is one, the mean square difference from the script.
     after_round
         Called with the part that is done; imitation ends where it returns False.
+    goes_on
+        Whether the model's networks have learned the same task before.
     """
     optimizer = torch.optim.Adam(model.policy.parameters())
+    slowness = GOING_ON if goes_on else 1.0
     per_round = max(1, round(steps / (ROUNDS * adapter.num_envs)))
     seen, wanted = [], []
     numbers: dict[str, float] = {}
@@ -69,15 +76,16 @@ def imitate(
             scripted = np.clip(adapter.batch.task.scripted_policy(adapter.batch), -1.0, 1.0).astype(np.float32)
             seen.append(observations)
             wanted.append(scripted)
-            adapter.step_async(_played(model, observations, scripted) if number else scripted)
+            adapter.step_async(_played(model, observations, scripted) if number or goes_on else scripted)
             observations, *_ = adapter.step_wait()
             model.num_timesteps += adapter.num_envs
             show((number + step / per_round) / ROUNDS, numbers)
         all_seen = np.concatenate(seen)
-        _learn_scale(model, all_seen, n_new=per_round * adapter.num_envs)
+        if not goes_on:
+            _learn_scale(model, all_seen, n_new=per_round * adapter.num_envs)
         data = [torch.as_tensor(each) for each in (_normalized(model, all_seen), np.concatenate(wanted))]
         for rate in np.geomspace(*LEARNING_RATES, EPOCHS if number < ROUNDS - 1 else LAST_EPOCHS):
-            optimizer.param_groups[0]["lr"] = rate
+            optimizer.param_groups[0]["lr"] = slowness * rate
             numbers = {"mean square difference": _fit(model.policy, optimizer, *data)}
             show((number + 1.0) / ROUNDS, numbers)
         if not after_round((number + 1.0) / ROUNDS):

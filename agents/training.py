@@ -104,8 +104,9 @@ class Training:
         checkpoint = self._find_checkpoint() if resume else None
         saved: dict[str, Any] = {"seconds": 0.0, "table_sizes": (0, 0), "imitated": 0}
         self.model = self._new_model() if checkpoint is None else self._load_model(checkpoint)
+        self._known_env: str | None = None
         if checkpoint is None and config.get("start_from"):
-            self._take_over(config["start_from"])
+            self._known_env = self._take_over(config["start_from"])
         self.model.set_logger(Logger(folder=None, output_formats=[]))
         if checkpoint is not None:
             saved = self._load_state(checkpoint)
@@ -147,8 +148,8 @@ class Training:
         except (TypeError, ValueError, AssertionError) as error:
             raise BadInputError(f"Stable-Baselines3 refuses the hyperparameters: {error}") from error
 
-    def _take_over(self, start: str) -> None:
-        """Begin with the networks of another run or a pretrained policy and its statistics of observations.
+    def _take_over(self, start: str) -> str:
+        """Begin with the networks of another run or a pretrained policy and its statistics, and return its task's id.
 
         Explores as if new. What is seen here and was not there counts for nothing at first.
         """
@@ -168,6 +169,7 @@ class Training:
         normalize = self.model.get_vec_normalize_env()
         if normalize is not None and known is not None:
             normalize.obs_rms = transfer.statistics(known, len(now), where)
+        return env_id
 
     def _load_model(self, checkpoint: Path) -> Any:
         env: Any = self.adapter
@@ -260,7 +262,7 @@ class Training:
             return not self._stop
 
         imitate(self.model, self.adapter, steps=self.config["imitate"], show=self.display.update,
-                after_round=after_round)  # fmt: skip
+                after_round=after_round, goes_on=self._known_env == self.config["env"])  # fmt: skip
         self._imitated = 0 if self._stop else self.model.num_timesteps
         self.budget.free_steps = self.model.num_timesteps
         self._pass_points(self.spent)

@@ -135,7 +135,7 @@ def actions_of(batch: Any, gaits: list[Gait]) -> np.ndarray:
     sight, time = see(batch.observations), batch.elapsed * batch.control_dt
     arm = np.where(sight.ahead >= 0.0, 1, 0)
     parts = np.split(np.arange(batch.num_envs), len(gaits))
-    return np.concatenate([carry(sight.goal[part], time[part], arm[part], np.ones(len(part), dtype=bool), gait)
+    return np.concatenate([carry(sight.goal[part], time[part], arm[part], gait)
                            for gait, part in zip(gaits, parts, strict=True)])  # fmt: skip
 
 

@@ -1,8 +1,8 @@
 """A scripted octopus: it walks to its object, turns an arm's inside to it, bends the arm around it and carries it home.
 
-It goes by what is observed, the time, whether the object is grabbed, and how far the head has been from home. Bending
-at full strength, an arm takes hold of what stands in its bend, within some 15 cm of its base and on the right of it,
-the side away from the other arm. Places are as seen from the head: ahead and to the right [m]. What holds for the
+It goes by what is observed, the time, and whether the object is grabbed. Bending at full strength, an arm takes
+hold of what stands in its bend, within some 15 cm of its base and on the right of it, the side away from the other
+arm. Places are as seen from the head: ahead and to the right [m]. What holds for the
 second arm, which points ahead, holds for the first one in the mirror: with the same activations, for those that twist
 are zero.
 """
@@ -114,10 +114,8 @@ HOMEWARD = Gait(-2.25, 2.0, 0.272, (
     (-2.34, 0.84, -0.5, 0.1, -2.02, 1.34, 0.11, 0.34, 0.1),
 ), (-0.35, 0.09, -0.55, -0.09, -0.03, -0.62, -0.21, -0.27, 0.24))  # fmt: skip
 """How it hurries home, which is mostly where it came from: to the left and somewhat behind. It is more than twice as
-fast as the others, but runs past home at times, and then more objects fall. Found by `scripts/search_carrying.py`, by
+fast as the others. Found by `scripts/search_carrying.py`, by
 CMA-ES on how soon the object is home"""
-FAR = 0.42
-"""How far from home the head has been where it hurries: from nearer, the others are in time [m]"""
 
 
 class Sight(NamedTuple):
@@ -172,10 +170,10 @@ def fetch(env: "BatchEnv") -> Array:
     """Return the actions of the script in a task that follows how the object is handled, (B, 42)."""
     handled = now(env.situation())
     time = env.elapsed.astype(np.float64) * env.control_dt
-    return act(see(env.observations), time, handled.grabbed == 1.0, handled.head_way)
+    return act(see(env.observations), time, handled.grabbed == 1.0)
 
 
-def act(sight: Sight, time: Array, grabbed: Mask, furthest: Array) -> Array:
+def act(sight: Sight, time: Array, grabbed: Mask) -> Array:
     """Return the actions of the script, (B, 42).
 
     Parameters
@@ -185,8 +183,6 @@ def act(sight: Sight, time: Array, grabbed: Mask, furthest: Array) -> Array:
         Since the start of the episode [s], (B,).
     grabbed : Mask
         Whether an arm has grabbed the object, (B,) bool.
-    furthest : Array
-        How far the head has been from home [m], (B,).
     """
     ahead, right = sight.ahead, sight.right
     bearing = np.arctan2(right, ahead)
@@ -198,7 +194,7 @@ def act(sight: Sight, time: Array, grabbed: Mask, furthest: Array) -> Array:
     for chosen, play in (
         (is_close & (right > BEHIND), turn(sight, time, arm)),
         (is_close & (right > BEHIND) & _is_in_the_bend(sight, arm), bend(sight, arm)),
-        (grabbed, carry(sight.goal, time, arm, furthest >= FAR)),
+        (grabbed, carry(sight.goal, time, arm)),
     ):
         actions[chosen] = play[chosen]
     return actions
@@ -260,8 +256,8 @@ def bend(sight: Sight, arm: Index) -> Array:
     return actions
 
 
-def carry(way: Array, time: Array, arm: Index, hurries: Mask, homeward: Gait = HOMEWARD) -> Array:
-    """Return the actions that carry the object some way (B, 2) [m] in an arm, some of them in a hurry, (B, 42)."""
+def carry(way: Array, time: Array, arm: Index, homeward: Gait = HOMEWARD) -> Array:
+    """Return the actions that carry the object some way (B, 2) [m] in an arm, (B, 42)."""
     # in the mirror, for the first arm
     ahead, right = np.where(arm == 1, 1.0, -1.0) * way[:, 0], way[:, 1]
     ways, periods, tables = (np.array(column) for column in zip(*CARRYING.values(), strict=True))
@@ -271,7 +267,7 @@ def carry(way: Array, time: Array, arm: Index, hurries: Mask, homeward: Gait = H
     off = (np.arctan2(right, ahead) - homeward.course + np.pi) % (2.0 * np.pi) - np.pi
     hurried = _wave(time, np.full(len(time), homeward.period), np.array(homeward.table))
     hurried += np.clip(off, -1.0, 1.0)[:, None] * np.array(homeward.steering)
-    is_hurried = (hurries & (np.abs(off) < homeward.width))[:, None]
+    is_hurried = (np.abs(off) < homeward.width)[:, None]
     level = np.clip(np.where(is_hurried, hurried, _wave(time, periods[best], tables[best])), -1.0, 1.0)
     actions = np.zeros((len(arm), N_ACTIVATIONS))
     own, other = arm[:, None] * N_FUNCTIONS, (1 - arm)[:, None] * N_FUNCTIONS

@@ -35,6 +35,15 @@ def test_imitation_comes_near_the_script(tmp_path):
     assert taught.normalization.obs_rms.count > 320
 
 
+def test_imitation_of_the_same_task_goes_on_from_what_is_known(tmp_path):
+    taught, later = tmp_path / "taught", tmp_path / "later"
+    run("agents.train", "--steps", 0, "--imitate", 320, "--folder", taught, *SMALL_PPO)
+    run("agents.train", "--steps", 0, "--imitate", 40, "--start-from", taught, "--folder", later, *SMALL_PPO)
+    before, after = (load_run(folder)[0] for folder in (taught, later))
+    assert after.normalization.obs_rms.count < before.normalization.obs_rms.count + 40
+    assert difference_from_script(after) < 1.2 * difference_from_script(before)
+
+
 def test_a_run_that_imitates_goes_on_as_if_not_interrupted(tmp_path):
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     begin = ("agents.train", "--imitate", 80)

@@ -50,12 +50,11 @@ def test_trials_begin_where_environments_were(script):
 
 
 def test_the_first_arm_carries_in_the_mirror():
-    """Ahead is behind for it, and each arm's activations are the other's."""
+    """Ahead is behind for it, and each arm's activations are the other's; the last way is no hurried one."""
     way = np.array([[0.3, -0.4], [-0.1, -0.5], [0.2, 0.3]])
     time = np.array([0.1, 0.75, 1.3])
-    hurries = np.array([True, False, True])
-    second = carry(way, time, np.ones(3, dtype=np.int64), hurries)
-    first = carry(way * [-1.0, 1.0], time, np.zeros(3, dtype=np.int64), hurries)
+    second = carry(way, time, np.ones(3, dtype=np.int64))
+    first = carry(way * [-1.0, 1.0], time, np.zeros(3, dtype=np.int64))
     arms = second.reshape(3, 3, 2, 7)
     np.testing.assert_array_equal(first.reshape(3, 3, 2, 7), arms[:, :, ::-1])
     assert np.ptp(second[:, 7:14]) == 0.0 and (second[:, 7:14] == 1.0).all()
