@@ -278,7 +278,7 @@ def spreads(env_id: str) -> tuple[str, ...]:
     """Return the ways in which an environment can draw its starts."""
     from elastica_gym.envs import TASKS
 
-    return tuple(TASKS[env_id.rpartition("/")[2].removesuffix("-v0")].starts)
+    return tuple(TASKS[env_id.rpartition("/")[2].removesuffix("-v1")].starts)
 
 
 def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs: dict[str, Any]) -> Path | None:

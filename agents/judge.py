@@ -96,7 +96,7 @@ def _check(env_id: str, targets: int, target_seed: int, n_threads: int, record: 
     from elastica_gym.envs import TASKS
 
     choose("environment", env_id, environment_ids())
-    task = TASKS.get(env_id.rpartition("/")[2].removesuffix("-v0"))
+    task = TASKS.get(env_id.rpartition("/")[2].removesuffix("-v1"))
     if task is None or not set(KINDS) <= set(task.starts):
         raise BadInputError(f"{env_id} has no object to fetch from {', '.join(KINDS)} targets.")
     if not 1 <= targets <= MOST_TARGETS:

@@ -1,4 +1,4 @@
-"""Plot learning curves over seeds: ``python -m agents.plot_curves --env ID --runs runs/SnakeForward-v0/ppo-*``."""
+"""Plot learning curves over seeds: ``python -m agents.plot_curves --env ID --runs runs/SnakeForward-v1/ppo-*``."""
 
 import dataclasses
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Search a gait by CMA-ES: ``python -m agents.search --env elastica_gym/SnakeForward-v0``."""
+"""Search a gait by CMA-ES: ``python -m agents.search --env elastica_gym/SnakeForward-v1``."""
 
 import dataclasses
 import time
@@ -28,7 +28,7 @@ class SearchArguments:
     behind is in runs/<id>/search-<seed>-<time>/.
     """
 
-    env: str = "elastica_gym/SnakeForward-v0"
+    env: str = "elastica_gym/SnakeForward-v1"
     """Environment id."""
     gait: Literal["wave", "steered_wave", "stroke"] | None = None
     """The family of gaits: the snake's published wave; one that also has a period and bends towards the goal; or the

@@ -1,4 +1,4 @@
-"""Train an agent: ``python -m agents.train --env elastica_gym/SnakeForward-v0 --algo ppo``."""
+"""Train an agent: ``python -m agents.train --env elastica_gym/SnakeForward-v1 --algo ppo``."""
 
 import dataclasses
 import importlib.metadata
@@ -30,7 +30,7 @@ class TrainArguments:
     Hyperparameters come from configs/<algo>.yml. What the run leaves behind is in runs/<id>/<algo>-<seed>-<time>/.
     """
 
-    env: str = "elastica_gym/SnakeForward-v0"
+    env: str = "elastica_gym/SnakeForward-v1"
     """Environment id."""
     algo: str = "ppo"
     """Algorithm: ppo or sac."""

@@ -3,8 +3,8 @@
 ``import elastica_gym`` registers the environments with Gymnasium::
 
     import elastica_gym, gymnasium
-    env = gymnasium.make("elastica_gym/SnakeForward-v0")
-    envs = gymnasium.make_vec("elastica_gym/SnakeForward-v0", num_envs=64)
+    env = gymnasium.make("elastica_gym/SnakeForward-v1")
+    envs = gymnasium.make_vec("elastica_gym/SnakeForward-v1", num_envs=64)
 
 With ``render_mode="rgb_array"``, ``env.render()`` draws pictures.
 """

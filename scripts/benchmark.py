@@ -34,7 +34,7 @@ OWN_FORCE_LIMIT = 3.0
 """What a force of the user's own that does nothing may add to a step of the library [us]"""
 LIBRARY_STEPS_OURS, LIBRARY_STEPS_THEIRS = 200, 10
 THREADS_TARGET = 1.7
-ONE_OF_EACH = ("elastica_gym/SnakeForward-v0", "elastica_gym/OctopusReach-v0")
+ONE_OF_EACH = ("elastica_gym/SnakeForward-v1", "elastica_gym/OctopusReach-v1")
 """An environment of each animal; its other tasks have the same physics"""
 COLD_LIMIT, WARM_LIMIT = 40.0, 3.0
 """Time to the first step, with and without compiling [s]"""
@@ -50,7 +50,7 @@ FIRST_STEP = """
 import time
 start = time.perf_counter()
 import elastica_gym, gymnasium
-env = gymnasium.make("elastica_gym/SnakeForward-v0")
+env = gymnasium.make("elastica_gym/SnakeForward-v1")
 env.reset(seed=0)
 env.step(env.action_space.sample())
 print(time.perf_counter() - start)

@@ -17,7 +17,7 @@ from elastica_gym.muscles import DIRECTIONS, LEVELS, N_ACTIVATIONS, N_ARMS, N_FU
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ENV = "elastica_gym/OctopusReach-v0"
+ENV = "elastica_gym/OctopusReach-v1"
 SECONDS = 0.4
 EFFECT = {"normal": "bends sideways", "binormal": "lifts", "tangent": "twists"}
 COLORS = ("#eb7f26", "#2f7fb8", "#1f7a72")

@@ -18,7 +18,7 @@ from agents.checks import BadInputError
 from elastica_gym.viz import Policy, Rollout, Stage, framing, run_rollout
 from elastica_gym.viz.frames import animal_of, objects, outline, trail
 
-ENVS = {"snake": "elastica_gym/SnakeForward-v0", "octopus": "elastica_gym/OctopusCrawl-v0"}
+ENVS = {"snake": "elastica_gym/SnakeForward-v1", "octopus": "elastica_gym/OctopusCrawl-v1"}
 OUTPUT = Path(__file__).parents[1] / "docs" / "images" / "animals.png"
 GAP = 10
 """Height of the white between the animals [pixels]"""

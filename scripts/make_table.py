@@ -45,7 +45,7 @@ class Arguments:
     """Wall-clock budget of each training and each search."""
     seeds: int = 3
     """Seeds of each learning algorithm: 0, 1, ..."""
-    off_policy: tuple[str, ...] = ("SnakeForward-v0", "SnakeReach-v0", "OctopusReach-v0")
+    off_policy: tuple[str, ...] = ("SnakeForward-v1", "SnakeReach-v1", "OctopusReach-v1")
     """Environments on which SAC is trained as well."""
     only: tuple[str, ...] = ()
     """Environments and policies (zero, random, scripted, cma, ppo, sac, pretrained) to keep to; by default all."""
@@ -64,7 +64,7 @@ class Cell:
     """One policy on one environment: one seed of it, if it learns."""
 
     env: str
-    """Name without the namespace, such as SnakeForward-v0"""
+    """Name without the namespace, such as SnakeForward-v1"""
     policy: str
     seed: int
 

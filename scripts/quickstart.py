@@ -12,7 +12,7 @@ from rich.table import Table
 
 from agents.seeds import TEST
 
-ENV = "elastica_gym/SnakeForward-v0"
+ENV = "elastica_gym/SnakeForward-v1"
 ROOT = Path(__file__).resolve().parents[1]
 
 

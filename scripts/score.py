@@ -27,7 +27,7 @@ class Arguments:
     """File for the points as JSON."""
     record: Path | None = None
     """Folder for rerun recordings: of the first episode on each kind of target."""
-    env: str = "elastica_gym/OctopusFetch-v0"
+    env: str = "elastica_gym/OctopusFetch-v1"
     """Environment id."""
     threads: int = 2
     """Threads for the physics."""

@@ -18,7 +18,7 @@ from agents.checks import make_folder, require_extra, run_command
 from elastica_gym.envs.handling import now
 from elastica_gym.envs.octopus_script import HOME, HOMEWARD, Gait, carry, fetch, see
 
-FETCH = "elastica_gym/OctopusFetch-v0"
+FETCH = "elastica_gym/OctopusFetch-v1"
 LONGEST = 5.5
 """Duration of a trial [s]"""
 

@@ -64,7 +64,7 @@ ROOT = Path(__file__).resolve().parents[1]
 class Arguments:
     """Go through the starter kit."""
 
-    env: str = "elastica_gym/OctopusFetch-v0"
+    env: str = "elastica_gym/OctopusFetch-v1"
     """Environment id."""
     spread: str = "default"
     """Where the object stands in the recording: default, arc or anywhere."""

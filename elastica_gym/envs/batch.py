@@ -44,7 +44,7 @@ Observations = NDArray[np.float32]
 class BatchEnv(VectorEnv):
     """A batch of animals, each at its own task.
 
-    Made by ``gymnasium.make_vec("elastica_gym/<Name>-v0", num_envs=...)``.
+    Made by ``gymnasium.make_vec("elastica_gym/<Name>-v1", num_envs=...)``.
 
     Parameters
     ----------

@@ -40,7 +40,8 @@ as there.
 
 Version history
 ---------------
-v0: the first.
+v1: firm ground for the snake; contact of the octopus that conserves energy.
+v0: the first; withdrawn.
 """
 
 from dataclasses import replace
@@ -145,7 +146,7 @@ def _refuse_weights(arguments: dict[str, Any]) -> None:
 class GoalBatchEnv(BatchEnv):
     """A batch of animals, each with a goal that can be changed afterwards.
 
-    Made by ``gymnasium.make_vec("elastica_gym/<Name>ReachGoal-v0", num_envs=...)``. Observations are a dict of
+    Made by ``gymnasium.make_vec("elastica_gym/<Name>ReachGoal-v1", num_envs=...)``. Observations are a dict of
     arrays; that of an episode's last step in ``final_obs`` is an array of dicts, as in Gymnasium's own batches.
     """
 

@@ -84,7 +84,8 @@ Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00
 
 Version history
 ---------------
-v0: the first.
+v1: contact that conserves energy (contact forces act on nodes, by the weights of the closest points).
+v0: the first; withdrawn.
 """
 
 from typing import TYPE_CHECKING

@@ -26,8 +26,8 @@ TASKS: dict[str, Task] = {
     for module in (snake_forward, snake_reach, snake_steer, octopus_crawl, octopus_reach, octopus_move, octopus_grab,
                    octopus_return, octopus_fetch)
 }
-IDS = tuple(f"{NAMESPACE}/{name}-v0" for name in TASKS)
-GOAL_IDS = tuple(f"{NAMESPACE}/{name}-v0" for name in GOAL_TASKS)
+IDS = tuple(f"{NAMESPACE}/{name}-v1" for name in TASKS)
+GOAL_IDS = tuple(f"{NAMESPACE}/{name}-v1" for name in GOAL_TASKS)
 """Those whose observation is a dict with an achieved and a desired goal"""
 
 
@@ -56,7 +56,7 @@ def register_all() -> None:
     for names, single, batch in ((TASKS, make_single, make_batch), (GOAL_TASKS, make_goal_single, make_goal_batch)):
         for name in names:
             gymnasium.register(
-                f"{NAMESPACE}/{name}-v0",
+                f"{NAMESPACE}/{name}-v1",
                 entry_point=f"{__name__}:{single.__name__}",
                 vector_entry_point=f"{__name__}:{batch.__name__}",
                 kwargs={"task": name},

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class SingleEnv(gymnasium.Env):
-    """One animal at its task. Made by ``gymnasium.make("elastica_gym/<Name>-v0")``.
+    """One animal at its task. Made by ``gymnasium.make("elastica_gym/<Name>-v1")``.
 
     Parameters
     ----------

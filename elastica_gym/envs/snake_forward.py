@@ -69,7 +69,8 @@ Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00
 
 Version history
 ---------------
-v0: the first.
+v1: firm ground (stiffness and damping), on which no part of the body sinks in.
+v0: the first; withdrawn.
 """
 
 from typing import TYPE_CHECKING

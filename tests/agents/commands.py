@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-FORWARD = "elastica_gym/SnakeForward-v0"
-REACH = "elastica_gym/SnakeReach-v0"
+FORWARD = "elastica_gym/SnakeForward-v1"
+REACH = "elastica_gym/SnakeReach-v1"
 SMALL = ("--n-envs", "2", "--evaluations", "1", "--evaluation-episodes", "2", "--recordings", "0")
 SMALL_EPISODES = "env_kwargs={duration: 0.5}"
 SMALL_PPO = (*SMALL, "--set", "n_steps=20", "batch_size=20", "n_epochs=2", SMALL_EPISODES)

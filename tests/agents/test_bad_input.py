@@ -27,8 +27,8 @@ def finished(tmp_path_factory):
 
 
 def test_unknown_environment():
-    assert f"did you mean '{FORWARD}'" in refused("agents.train", "--env", "elastica_gym/SnakeForwards-v0")
-    assert f"did you mean '{FORWARD}'" in refused("agents.evaluate", "--policy", "zero", "--env", "SnakeForward-v0")
+    assert f"did you mean '{FORWARD}'" in refused("agents.train", "--env", "elastica_gym/SnakeForwards-v1")
+    assert f"did you mean '{FORWARD}'" in refused("agents.evaluate", "--policy", "zero", "--env", "SnakeForward-v1")
 
 
 def test_unknown_algorithm():
@@ -80,7 +80,7 @@ def test_evaluations_that_cannot_be(option, message):
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        (("--env", "elastica_gym/SnakeForwards-v0"), f"'elastica_gym/SnakeForwards-v0'; did you mean '{FORWARD}'"),
+        (("--env", "elastica_gym/SnakeForwards-v1"), f"'elastica_gym/SnakeForwards-v1'; did you mean '{FORWARD}'"),
         (("--env", FORWARD, "--n-envs", 0), "n_envs must be at least 1, got 0"),
         (("--env", FORWARD, "--sim-dt", 1.0), "The environment refuses its arguments: sim_dt"),
     ],
@@ -90,14 +90,14 @@ def test_divergences_that_cannot_be_counted(option, message):
 
 
 def test_unknown_spread():
-    octopus = "--policy", "zero", "--env", "elastica_gym/OctopusReach-v0"
+    octopus = "--policy", "zero", "--env", "elastica_gym/OctopusReach-v1"
     assert "'everywhere'; did you mean 'anywhere'? Valid: anywhere, arc, default." in refused(
         "agents.evaluate", *octopus, "--spread", "everywhere"
     )
 
 
 def test_the_snakes_gait_is_not_the_octopuss():
-    message = refused("agents.evaluate", "--policy", "seed_gait", "--env", "elastica_gym/OctopusCrawl-v0")
+    message = refused("agents.evaluate", "--policy", "seed_gait", "--env", "elastica_gym/OctopusCrawl-v1")
     assert "seed_gait is the snake's published gait" in message
 
 

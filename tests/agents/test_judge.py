@@ -23,8 +23,8 @@ from agents.trials import SAMPLE_TIME, run_trials
 from agents.vec_env import make_batch_vec_env
 from tests.agents.commands import ROOT, environment
 
-REACH = "elastica_gym/OctopusReach-v0"
-FETCH = "elastica_gym/OctopusFetch-v0"
+REACH = "elastica_gym/OctopusReach-v1"
+FETCH = "elastica_gym/OctopusFetch-v1"
 SHORT = dict(targets=1, target_seed=3, duration=0.3)
 SHAPE = (3, 42)
 
@@ -317,9 +317,9 @@ def test_a_policy_that_breaks_late_is_worth_nothing(write):
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        (dict(env_id="elastica_gym/OctopusRech-v0"), "did you mean 'elastica_gym/OctopusReach-v0'"),
-        (dict(env_id="elastica_gym/SnakeReach-v0"), "has no object to fetch"),
-        (dict(env_id="elastica_gym/OctopusCrawl-v0"), "has no object to fetch"),
+        (dict(env_id="elastica_gym/OctopusRech-v1"), "did you mean 'elastica_gym/OctopusReach-v1'"),
+        (dict(env_id="elastica_gym/SnakeReach-v1"), "has no object to fetch"),
+        (dict(env_id="elastica_gym/OctopusCrawl-v1"), "has no object to fetch"),
         (dict(targets=0), "targets must be from 1 to 1000, got 0"),
         (dict(target_seed=-1), "target_seed must be at least 0, got -1"),
         (dict(n_threads=0), "threads must be at least 1, got 0"),

@@ -14,7 +14,7 @@ from elastica_gym.envs.handling import Handling, now
 from elastica_gym.envs.octopus_fetch import see_goal
 
 POLICY = Path(agents.__file__).parent / "pretrained" / "octopus_fetch_script.py"
-FETCH = "elastica_gym/OctopusFetch-v0"
+FETCH = "elastica_gym/OctopusFetch-v1"
 
 
 @pytest.fixture
@@ -47,7 +47,7 @@ def test_the_file_does_what_the_script_does(make):
 
 
 def test_the_file_tells_by_the_goal_whether_it_holds_the_object(make):
-    batch = make("elastica_gym/OctopusReturn-v0")
+    batch = make("elastica_gym/OctopusReturn-v1")
     observations, _ = batch.reset(seed=[3, 4])
     assert (now(batch.situation()).grabbed == 1.0).all()
     policy = FilePolicy(POLICY)

@@ -12,7 +12,7 @@ from agents.vec_env import make_batch_vec_env
 from tests.agents.commands import SMALL, SMALL_EPISODES, run
 
 PERIODS = (0.37, 1.85)
-RETURN = "elastica_gym/OctopusReturn-v0"
+RETURN = "elastica_gym/OctopusReturn-v1"
 
 
 @pytest.fixture

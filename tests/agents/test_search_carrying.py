@@ -13,7 +13,7 @@ from gymnasium.vector import AutoresetMode
 from elastica_gym.envs.octopus_script import HOMEWARD, carry
 from tests.agents.commands import ROOT, environment
 
-RETURN = "elastica_gym/OctopusReturn-v0"
+RETURN = "elastica_gym/OctopusReturn-v1"
 
 
 @pytest.fixture

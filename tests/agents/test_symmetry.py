@@ -11,8 +11,8 @@ from agents.symmetry import SymmetricPolicy
 from elastica_gym.envs.batch import CLOCK_PERIOD
 from elastica_gym.muscles import activation_names
 
-IDS = ("elastica_gym/OctopusCrawl-v0", "elastica_gym/SnakeForward-v0")
-TRAINED = (*IDS, "elastica_gym/SnakeSteer-v0")
+IDS = ("elastica_gym/OctopusCrawl-v1", "elastica_gym/SnakeForward-v1")
+TRAINED = (*IDS, "elastica_gym/SnakeSteer-v1")
 """What is trained with such a policy; the second snake has more to see"""
 
 

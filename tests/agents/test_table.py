@@ -56,22 +56,22 @@ def test_cells():
         assert kinds[:3] == ["zero", "random", "scripted"] and kinds.count("cma") == 1 and kinds.count("ppo") == 3
     assert len({cell.env for cell in cells if cell.policy == "sac"}) == 3
     shipped = {cell.env for cell in cells if cell.policy == "pretrained"}
-    assert shipped == set(make_table.pretrained()) >= {"SnakeForward-v0", "OctopusCrawl-v0"}
-    few = make_table.cells_of(make_table.Arguments(only=("elastica_gym/SnakeReach-v0", "sac", "zero"), seeds=2))
-    assert [cell.name for cell in few] == ["SnakeReach-v0-zero-0", "SnakeReach-v0-sac-0", "SnakeReach-v0-sac-1"]
+    assert shipped == set(make_table.pretrained()) >= {"SnakeForward-v1", "OctopusCrawl-v1"}
+    few = make_table.cells_of(make_table.Arguments(only=("elastica_gym/SnakeReach-v1", "sac", "zero"), seeds=2))
+    assert [cell.name for cell in few] == ["SnakeReach-v1-zero-0", "SnakeReach-v1-sac-0", "SnakeReach-v1-sac-1"]
 
 
 def test_the_table_is_made_cell_by_cell(tmp_path):
     """In a few seconds of training, after a kill in the middle of one, which leaves a folder without a result."""
     cells = tmp_path / "cells"
-    killed = cells / "SnakeForward-v0-ppo-0"
+    killed = cells / "SnakeForward-v1-ppo-0"
     killed.mkdir(parents=True)
     (killed / "config.yml").write_text("of a run that was killed")
     options = "--minutes", 0.02, "--seeds", 1, "--episodes", 2, "--out", tmp_path
-    which = "--only", "SnakeForward-v0", "zero", "cma", "ppo"
+    which = "--only", "SnakeForward-v1", "zero", "cma", "ppo"
     assert "0 of 3 cells are there already" in command(*options, *which)
     results = {path.stem: json.loads(path.read_text()) for path in cells.glob("*.json")}
-    assert sorted(results) == [f"SnakeForward-v0-{policy}-0" for policy in ("cma", "ppo", "zero")]
+    assert sorted(results) == [f"SnakeForward-v1-{policy}-0" for policy in ("cma", "ppo", "zero")]
     for name, cell in results.items():
         assert len(cell["returns"]) == len(cell["distances"]) == 2
         assert (cell["seconds"] > 0.0) == ("zero" not in name)
@@ -80,7 +80,7 @@ def test_the_table_is_made_cell_by_cell(tmp_path):
     assert [row[1] for row in rows] == ["zero", "CMA-ES", "PPO"]
     mean, low, high = map(float, re.fullmatch(r"(.*) \((.*) to (.*)\)", rows[1][3]).groups())
     assert low <= mean <= high
-    assert mean == pytest.approx(np.mean(results["SnakeForward-v0-cma-0"]["distances"]), abs=1e-3)
+    assert mean == pytest.approx(np.mean(results["SnakeForward-v1-cma-0"]["distances"]), abs=1e-3)
     assert (tmp_path / "table.png").read_bytes().startswith(b"\x89PNG")
 
     written = {path: path.stat().st_mtime_ns for path in cells.glob("*.json")}
@@ -98,5 +98,5 @@ def test_cells_of_other_settings_are_not_mixed(tmp_path):
 
 @pytest.mark.slow
 def test_off_policy_cells(tmp_path):
-    command("--minutes", 0.02, "--seeds", 1, "--episodes", 2, "--out", tmp_path, "--only", "SnakeForward-v0", "sac")
-    assert "| SnakeForward-v0 | SAC |" in (tmp_path / "table.md").read_text()
+    command("--minutes", 0.02, "--seeds", 1, "--episodes", 2, "--out", tmp_path, "--only", "SnakeForward-v1", "sac")
+    assert "| SnakeForward-v1 | SAC |" in (tmp_path / "table.md").read_text()

@@ -15,7 +15,7 @@ from agents.run_files import METRICS, read_table
 from agents.vec_env import make_batch_vec_env, observation_names
 from tests.agents.commands import FORWARD, REACH, SMALL, SMALL_EPISODES, SMALL_PPO, run
 
-CRAWL, STEER = "elastica_gym/OctopusCrawl-v0", "elastica_gym/SnakeSteer-v0"
+CRAWL, STEER = "elastica_gym/OctopusCrawl-v1", "elastica_gym/SnakeSteer-v1"
 
 
 @pytest.fixture(scope="module")

@@ -263,7 +263,7 @@ def test_step_before_reset_says_so(any_id, make_vec):
 def test_arguments_that_cannot_be_are_refused_at_construction(env_id, kwargs, message):
     from elastica_gym.envs import TASKS, BatchEnv
 
-    task = TASKS[env_id.split("/")[1].removesuffix("-v0")]
+    task = TASKS[env_id.split("/")[1].removesuffix("-v1")]
     with pytest.raises(ValueError, match=message):
         BatchEnv(task, **kwargs)
 

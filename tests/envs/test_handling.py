@@ -8,7 +8,7 @@ from elastica_gym.envs.handling import FEWEST, KEPT, WRAPPED, Handling, now
 
 from .conftest import random_actions
 
-RETURN, GRAB, MOVE, FETCH = (f"elastica_gym/Octopus{name}-v0" for name in ("Return", "Grab", "Move", "Fetch"))
+RETURN, GRAB, MOVE, FETCH = (f"elastica_gym/Octopus{name}-v1" for name in ("Return", "Grab", "Move", "Fetch"))
 
 
 def test_what_is_held_at_the_start_is_wrapped_and_stays_so(make_vec):

@@ -15,7 +15,7 @@ from elastica_gym.viz.frames import FIELD_OF_VIEW, following
 
 from .conftest import random_actions
 
-SNAKE, OCTOPUS = "elastica_gym/SnakeReach-v0", "elastica_gym/OctopusFetch-v0"
+SNAKE, OCTOPUS = "elastica_gym/SnakeReach-v1", "elastica_gym/OctopusFetch-v1"
 DRAWN = {"render_mode": "rgb_array", "render_size": (96, 64)}
 
 

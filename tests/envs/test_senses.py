@@ -4,7 +4,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-FORWARD = "elastica_gym/SnakeForward-v0"
+FORWARD = "elastica_gym/SnakeForward-v1"
 
 
 def columns(env, observations, prefix):
@@ -80,7 +80,7 @@ def test_too_few_elements_are_refused():
         gymnasium.make_vec(FORWARD, num_envs=1, body_kwargs={"n_elements": 3})
 
 
-REACH = "elastica_gym/OctopusReach-v0"
+REACH = "elastica_gym/OctopusReach-v1"
 
 
 def in_the_heads_frame(env, i, vector):

@@ -42,7 +42,7 @@ def place(env, heads):
 
 def test_reaching_early_beats_reaching_late_and_hovering(make_vec):
     """Three snakes come equally near: one at once, one late, one only almost and stays there."""
-    env = make_vec("elastica_gym/SnakeReach-v0", 3, duration=5.0, autoreset_mode=AutoresetMode.DISABLED)
+    env = make_vec("elastica_gym/SnakeReach-v1", 3, duration=5.0, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=[0, 0, 0])
     place(env, 0.5)
     total, running = np.zeros(3), np.ones(3, dtype=bool)
@@ -60,7 +60,7 @@ def test_reaching_early_beats_reaching_late_and_hovering(make_vec):
 
 
 def test_targets_fill_the_ring_uniformly(make_vec):
-    env = make_vec("elastica_gym/SnakeReach-v0", 2000)
+    env = make_vec("elastica_gym/SnakeReach-v1", 2000)
     env.reset(seed=0)
     away = (env.goal[:, :2] - env.pose.centre[:, [0, 2]]) / env.body.senses.length
     radius, bearing = np.hypot(*away.T), np.arctan2(*away.T)
@@ -72,7 +72,7 @@ def test_targets_fill_the_ring_uniformly(make_vec):
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_forward_pays_for_the_way_along_the_initial_heading(make_vec, sign):
-    env = make_vec("elastica_gym/SnakeForward-v0", 2)
+    env = make_vec("elastica_gym/SnakeForward-v1", 2)
     env.reset(seed=3)
     heading = env.goal[:, :2]
     first = int(env.body.model.first_slot[0])
@@ -85,7 +85,7 @@ def test_forward_pays_for_the_way_along_the_initial_heading(make_vec, sign):
 
 
 def test_heading_pays_for_turning_back_and_costs_as_much_for_turning_away(make_vec):
-    env = make_vec("elastica_gym/SnakeForward-v0", 2, duration=2.0)
+    env = make_vec("elastica_gym/SnakeForward-v1", 2, duration=2.0)
     env.reset(seed=3)
     total, off_course = np.zeros(2), np.zeros(2)
     for step in range(30):
@@ -100,7 +100,7 @@ def test_heading_pays_for_turning_back_and_costs_as_much_for_turning_away(make_v
 
 @pytest.mark.slow
 def test_the_scripted_crawl_of_the_octopus_goes_half_a_metre(make_vec):
-    env = make_vec("elastica_gym/OctopusCrawl-v0", 64, duration=None, autoreset_mode=AutoresetMode.DISABLED)
+    env = make_vec("elastica_gym/OctopusCrawl-v1", 64, duration=None, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
     made, running = np.zeros(64), np.ones(64, dtype=bool)
     for _ in range(env.max_episode_steps):
@@ -111,7 +111,7 @@ def test_the_scripted_crawl_of_the_octopus_goes_half_a_metre(make_vec):
 
 
 def test_toppling_ends_an_octopus_and_costs(make_vec):
-    env = make_vec("elastica_gym/OctopusCrawl-v0", 2, duration=2.0, autoreset_mode=AutoresetMode.DISABLED)
+    env = make_vec("elastica_gym/OctopusCrawl-v1", 2, duration=2.0, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
     # both arms lift as far as they can
     lift = np.zeros((2, 42))

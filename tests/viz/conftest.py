@@ -17,12 +17,12 @@ def pushing(observations, env):
 
 @pytest.fixture(scope="session")
 def forward() -> Rollout:
-    return run_rollout("elastica_gym/SnakeForward-v0", scripted, seed=3, duration=2.0)
+    return run_rollout("elastica_gym/SnakeForward-v1", scripted, seed=3, duration=2.0)
 
 
 @pytest.fixture(scope="session")
 def octopus() -> Rollout:
-    return run_rollout("elastica_gym/OctopusReach-v0", pushing, seed=3, duration=1.0)
+    return run_rollout("elastica_gym/OctopusReach-v1", pushing, seed=3, duration=1.0)
 
 
 @pytest.fixture(params=["forward", "octopus"])
@@ -32,4 +32,4 @@ def either(request) -> Rollout:
 
 @pytest.fixture(scope="session")
 def reach() -> Rollout:
-    return run_rollout("elastica_gym/SnakeReach-v0", scripted, seed=3)
+    return run_rollout("elastica_gym/SnakeReach-v1", scripted, seed=3)

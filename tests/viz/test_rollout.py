@@ -9,7 +9,7 @@ from elastica_gym.viz import Recorder, run_rollout
 
 from .conftest import scripted
 
-ID = "elastica_gym/SnakeForward-v0"
+ID = "elastica_gym/SnakeForward-v1"
 
 
 def make(num_envs=2, **kwargs):
@@ -70,7 +70,7 @@ def test_touch_is_felt_where_the_object_is(octopus):
 
 
 def test_a_recorded_moment_stays_as_it_was():
-    env = gymnasium.make_vec("elastica_gym/OctopusReach-v0", num_envs=2, vectorization_mode="vector_entry_point")
+    env = gymnasium.make_vec("elastica_gym/OctopusReach-v1", num_envs=2, vectorization_mode="vector_entry_point")
     env.reset(seed=0)
     recorder = Recorder(env, 1).capture()
     before = env.unwrapped.state.body_x[1].copy()
@@ -82,7 +82,7 @@ def test_a_recorded_moment_stays_as_it_was():
 
 
 def test_direction_is_the_one_that_the_task_commands(forward):
-    env = gymnasium.make_vec("elastica_gym/OctopusCrawl-v0", num_envs=1, vectorization_mode="vector_entry_point")
+    env = gymnasium.make_vec("elastica_gym/OctopusCrawl-v1", num_envs=1, vectorization_mode="vector_entry_point")
     env.reset(seed=0)
     goal = env.unwrapped.goal[0]
     assert Recorder(env).capture().rollout().direction == pytest.approx(np.array([[goal[2], 0.0, goal[3]]]))
