@@ -14,6 +14,7 @@ from agents.evaluate import Evaluation, run_episodes
 from agents.gaits import GAITS, Gait, GaitPolicy, check_fits, describe, gait_for
 from agents.progress import ProgressDisplay
 from agents.run_files import GAIT, SEARCH, Table, read_table
+from agents.seeds import training_seeds
 from agents.training import Budget
 from agents.vec_env import BatchVecEnv, make_batch_vec_env
 
@@ -44,7 +45,7 @@ class Search:
         check_fits(self.gait, body)
         self._batch = self._environments(config["population"] * self.gait.starts)
         self._rng = np.random.default_rng(config["seed"])
-        self._next_seed: int = config["seed"]
+        self._n_starts = 0
         self.evaluations = 0
         self.best = -np.inf
 
@@ -108,15 +109,15 @@ class Search:
             "CMA_stds": spread,
             "bounds": [low, high],
             # zero would stand for the clock
-            "seed": 1 + 1000 * self.config["seed"] + number,
+            "seed": 1 + int(np.random.SeedSequence([self.config["seed"], number]).generate_state(1)[0] >> 1),
             "verbose": -9,
         }
         return cma.CMAEvolutionStrategy(start, 1.0, options)
 
     def _draw_starts(self) -> list[int]:
-        first = self._next_seed
-        self._next_seed += self.gait.starts
-        return list(range(first, self._next_seed))
+        seeds = training_seeds(self.config["seed"], self._n_starts, self.gait.starts)
+        self._n_starts += self.gait.starts
+        return seeds
 
     def _values(self, env: BatchVecEnv, candidates: np.ndarray, seeds: list[int]) -> tuple[np.ndarray, Evaluation]:
         """Return the mean objective of each candidate over the starts with these seeds, and all the episodes."""

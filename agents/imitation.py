@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from agents.rhythm import Rhythms
+from agents.seeds import training_seeds
 from agents.vec_env import BatchVecEnv
 
 ROUNDS = 40
@@ -69,7 +70,7 @@ def imitate(
     per_round = max(1, round(steps / (ROUNDS * adapter.num_envs)))
     seen, wanted = [], []
     numbers: dict[str, float] = {}
-    adapter.seed(model.seed)
+    adapter.seed(training_seeds(model.seed, 0, adapter.num_envs))
     observations = adapter.reset()
     for number in range(ROUNDS):
         for step in range(per_round):

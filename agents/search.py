@@ -16,7 +16,7 @@ from agents.checks import (
     run_command,
 )
 from agents.run_files import GAIT, SEARCH
-from agents.seeds import TRAINING, VALIDATION, check_seeds
+from agents.seeds import RUNS, VALIDATION, check_seeds
 
 
 @dataclasses.dataclass
@@ -34,7 +34,7 @@ class SearchArguments:
     """The family of gaits: the snake's published wave; one that also has a period and bends towards the goal; or the
     octopus's stroke. By default the wave on SnakeForward, and on the others what can reach a goal."""
     seed: int = 0
-    """Seed of the search; its starts have the seeds seed, seed + 1, ..."""
+    """Seed of the search, below 2**32; the seeds of its starts are derived from it (`agents.seeds`)."""
     evaluations: int | None = None
     """Candidates to evaluate, over all restarts; by default 6,000, or no limit if minutes are given."""
     minutes: float | None = None
@@ -91,7 +91,7 @@ def _started(arguments: SearchArguments) -> tuple[Path, dict[str, Any]]:
     if arguments.evaluations is arguments.minutes is None:
         config["evaluations"] = DEFAULT_EVALUATIONS
     check_bounds(config, LOWEST)
-    check_seeds("seed", config["seed"], 1, TRAINING)
+    check_seeds("seed", config["seed"], 1, RUNS)
     check_seeds("evaluation_seed", config["evaluation_seed"], config["evaluation_episodes"], VALIDATION)
     name = f"search-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
     folder = arguments.folder or arguments.out / arguments.env.rpartition("/")[2] / name

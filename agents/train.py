@@ -18,7 +18,7 @@ from agents.checks import (
     run_command,
 )
 from agents.run_files import BEST
-from agents.seeds import TRAINING, VALIDATION, check_seeds
+from agents.seeds import RUNS, VALIDATION, check_seeds
 
 VERSIONS = ("elastica-gym", "stable-baselines3", "torch", "numpy", "numba", "gymnasium")
 
@@ -35,7 +35,7 @@ class TrainArguments:
     algo: str = "ppo"
     """Algorithm: ppo or sac."""
     seed: int = 0
-    """Seed of networks and exploration, below 1,000,000; environment i has seed + i."""
+    """Seed of networks and exploration, below 2**32; the environments' seeds are derived from it (`agents.seeds`)."""
     steps: int | None = None
     """Environment steps to train for; by default n_timesteps of the configuration, or no limit if minutes are given."""
     minutes: float | None = None
@@ -170,9 +170,7 @@ def _check(config: dict[str, Any]) -> None:
     check_bounds(config, lowest)
     if config.get("imitate") and config["algo"] != "ppo":
         raise BadInputError(f"imitate must be 0 for {config['algo']}, got {config['imitate']}: only ppo can imitate")
-    n_envs = config["hyperparameters"].get("n_envs", 1)
-    # what is no number the environment refuses
-    check_seeds("seed", config["seed"], n_envs if isinstance(n_envs, int) else 1, TRAINING)
+    check_seeds("seed", config["seed"], 1, RUNS)
     check_seeds("evaluation_seed", config["evaluation_seed"], config["evaluation_episodes"], VALIDATION)
 
 

@@ -31,6 +31,7 @@ from agents.imitation import CRITIC_UPDATES, critic_alone, imitate
 from agents.policies import TrainedPolicy, load_model, load_normalization, load_run, use_one_thread
 from agents.progress import ProgressDisplay
 from agents.run_files import BEST, EVALUATIONS, METRICS, Table, read_table
+from agents.seeds import training_seeds
 from agents.vec_env import BatchVecEnv, make_batch_vec_env, observation_names
 
 SAC_STEPS_PER_ITERATION = 512
@@ -107,6 +108,8 @@ class Training:
         self._known_env: str | None = None
         if checkpoint is None and config.get("start_from"):
             self._known_env = self._take_over(config["start_from"])
+        # the model has seeded them with its own seed and those that follow, of which runs would share most
+        self.adapter.seed(training_seeds(config["seed"], 0, self.adapter.num_envs))
         self.model.set_logger(Logger(folder=None, output_formats=[]))
         if checkpoint is not None:
             saved = self._load_state(checkpoint)

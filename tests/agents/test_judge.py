@@ -18,7 +18,7 @@ from agents.checks import BadInputError
 from agents.judge import judge
 from agents.policy_process import PolicyError, PolicyProcess
 from agents.scoring import GOALS, goals_held, grabbed, moved
-from agents.seeds import SCORED, TEST, TRAINING, VALIDATION, target_seeds
+from agents.seeds import SCORED, TEST, TRAINED, VALIDATION, target_seeds
 from agents.trials import SAMPLE_TIME, run_trials
 from agents.vec_env import make_batch_vec_env
 from tests.agents.commands import ROOT, environment
@@ -166,7 +166,7 @@ def reach(n=2, **kwargs):
 
 def test_targets_are_never_those_of_training():
     seeds = [seed for stream in range(3) for seed in target_seeds(2020, stream, 100)]
-    assert len(set(seeds)) == 300 and min(seeds) >= SCORED > max(*TRAINING[-1:], *VALIDATION[-1:], *TEST[-1:])
+    assert len(set(seeds)) == 300 and min(seeds) >= SCORED > 2 * TRAINED - 1 > max(*VALIDATION[-1:], *TEST[-1:])
     assert target_seeds(2020, 1, 5) == target_seeds(2020, 1, 100)[:5] != target_seeds(2021, 1, 5)
 
 
