@@ -115,7 +115,7 @@ def octopus() -> Body:
     )  # fmt: skip
     model = build_model(
         [rod], planes=[ground], cylinders=[thing], rod_contact=SKIN, gravity=(0.0, -GRAVITY, 0.0),
-        activation_time=OCTOPUS.activation_time, is_balanced=True,
+        activation_time=OCTOPUS.activation_time, is_balanced=True, is_reciprocal=True,
     )  # fmt: skip
     start = int(model.first_slot[0])
     return Body(

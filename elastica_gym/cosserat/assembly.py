@@ -30,8 +30,8 @@ from .surroundings import Contact, Cylinder, Plane, Wave, net_couple
 def build_model(
     rods: Sequence[Continuum], *, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
     gravity: ArrayLike = (0.0, 0.0, 0.0), activation_time: float = 0.0, is_loaded: bool = False,
-    is_muscular: bool = True, is_balanced: bool = False, cylinders: Sequence[Cylinder] = (),
-    rod_contact: Contact | None = None,
+    is_muscular: bool = True, is_balanced: bool = False, is_reciprocal: bool = False,
+    cylinders: Sequence[Cylinder] = (), rod_contact: Contact | None = None,
 ) -> Model:  # fmt: skip
     """Lay rods out one after another and collect what acts on them.
 
@@ -55,6 +55,9 @@ def build_model(
         Whether the couples that a joint exerts on its two elements are exactly opposite, which conserves angular
         momentum. By default they are as documented (Gazzola et al. 2018, eq. 2.21) and PyElastica has them: in three
         dimensions opposite but for the third order of the joint's angle.
+    is_reciprocal : bool
+        Whether the loads of strains derive from a potential, which keeps the energy of rods that bend strongly. By
+        default they are as documented, without the tension of `ReciprocalTension`.
     cylinders : sequence of Cylinder
         Touched by all rods and planes, not by each other.
     rod_contact : Contact, optional
@@ -86,7 +89,8 @@ def build_model(
         first_slot=first.astype(np.int64), n_elements=counts.astype(np.int64), **fields,
         gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_muscular=is_muscular,
         is_viscous=bool(fields["viscosity"].any()),
-        is_balanced=is_balanced, activation_time=float(activation_time), planes=plane_table(planes),
+        is_balanced=is_balanced, is_reciprocal=is_reciprocal, activation_time=float(activation_time),
+        planes=plane_table(planes),
         waves=_wave_table(waves, rods, first, slots), cylinders=_cylinder_table(cylinders),
         rod_contact=_rod_contact(rod_contact, rods, first, slots),
     )  # fmt: skip
@@ -94,7 +98,7 @@ def build_model(
 
 _SCALAR = ("rest_length", "inv_rest_length", "rest_voronoi_length", "inv_rest_voronoi_length", "volume_root",
            "mass", "inv_mass", "damping_rate")  # fmt: skip
-_ROWS = {"shear": 3, "bend": 3, "inertia": 3, "inv_inertia": 3, "share": 2, "weight": 2, "viscosity": 2}
+_ROWS = {"shear": 3, "bend": 3, "inv_bend": 3, "inertia": 3, "inv_inertia": 3, "share": 2, "weight": 2, "viscosity": 2}
 
 
 def lay_out(fields: Mapping[str, Array], rod: Continuum, start: int) -> None:
@@ -114,8 +118,14 @@ def lay_out(fields: Mapping[str, Array], rod: Continuum, start: int) -> None:
         ("viscosity", elements, [np.broadcast_to(nu, n) for nu in (rod.viscosity, rod.torque_viscosity)]),
         ("rest_voronoi_length", voronoi, rod.rest_voronoi_length),
         ("inv_rest_voronoi_length", voronoi, 1.0 / rod.rest_voronoi_length), ("bend", voronoi, rod.bend_stiffness),
+        ("inv_bend", voronoi, _inverse(rod.bend_stiffness)),
     ):  # fmt: skip
         fields[name][..., where] = value
+
+
+def _inverse(a: Array) -> Array:
+    """Return 1/a, and 0 where a is 0: a joint that bends freely holds no energy."""
+    return np.divide(1.0, a, out=np.zeros_like(a), where=a > 0.0)
 
 
 def plane_table(planes: Sequence[Plane]) -> Planes:

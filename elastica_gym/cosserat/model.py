@@ -133,6 +133,8 @@ class Model(NamedTuple):
     """Diagonal of the shear and stretch stiffness S [N], (3, L)"""
     bend: Array
     """Diagonal of the bending and twist stiffness B [N m^2], (3, L)"""
+    inv_bend: Array
+    """Diagonal of its inverse [1/(N m^2)], zero at ghosts, (3, L)"""
     mass: Array
     """Nodal mass m [kg], (L,)"""
     inv_mass: Array
@@ -160,6 +162,8 @@ class Model(NamedTuple):
     """Whether any viscosity is not zero"""
     is_balanced: bool
     """Whether the two couples of a joint are exactly opposite in the lab, which conserves angular momentum"""
+    is_reciprocal: bool
+    """Whether the loads of strains derive from a potential, by a tension that the documented model leaves out"""
     activation_time: float
     """Time constant of muscle activation, 0 for immediate [s]"""
     planes: Planes

@@ -149,7 +149,7 @@ class BatchEnv(VectorEnv):
         self.activations = np.zeros((n, N_ACTIVATIONS))
         self.levels = np.zeros((n, N_ACTIVATIONS))
         self._observations = np.zeros((n, len(self.observation_names)), dtype=np.float32)
-        self._team = Team(self.body.model, self.state, self.control, self.n_threads)
+        self.integrator = Team(self.body.model, self.state, self.control, self.n_threads)
         self._feel = Bound(feel, self.body.model, self.state, self.levels, self.body.senses, self.pose, self._low,
                            self._high, self._observations)  # fmt: skip
         self._distance = np.zeros(n)
@@ -296,7 +296,7 @@ class BatchEnv(VectorEnv):
         tau = self.body.muscles.activation_time
         self.levels += (self.activations - self.levels) * (1.0 - np.exp(-self.control_dt / tau))
         self.elapsed += 1
-        self._team.advance(self.num_envs, self.sim_dt, self.n_substeps, self._feel)
+        self.integrator.advance(self.num_envs, self.sim_dt, self.n_substeps, self._feel)
 
     def _follow(self, now: Situation, where: Mask) -> None:
         """Follow the episodes of some environments."""

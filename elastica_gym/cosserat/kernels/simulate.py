@@ -22,7 +22,7 @@ from .pairs import ground_bodies, touch_bodies, touch_rods
 from .rings import follow, hand_back
 from .sides import join_sides
 from .step import ORTHONORMALISE_EVERY, drift, drift_twice, internal, kick, matrix, rows, settle
-from .tension import reciprocate
+from .tension import bend_energy_rates, reciprocate
 from .vectors import add, plus, times, to_material, vector
 
 # where there are loads from outside: nowhere, in a few slots, everywhere
@@ -107,9 +107,15 @@ def external_loads(model, scene, state, control, hooks, n):
                model.weight, state.length[0], state.radius[0], force)  # fmt: skip
     for j in range(scene.tensions.is_closed.size):
         first, last = ends(scene.tensions.span[j])
-        reciprocate(first, last, scene.tensions.is_closed[j], state.x[0], Q, state.w[0], state.length[0],
-                    state.kappa[0], model.rest_length, model.rest_voronoi_length, control.rest_sigma[0],
-                    control.rest_kappa[0], model.shear, model.bend, model.inertia, force)  # fmt: skip
+        bend_energy_rates(
+            first, last, state.length[0], rows(state.kappa[0]), rows(control.rest_kappa[0]), model.rest_voronoi_length,
+            rows(model.bend), rows(model.inv_bend), model.is_muscular, rows(state.couple[0]), state.scratch[0, 0],
+        )  # fmt: skip
+        reciprocate(
+            first, last, scene.tensions.is_closed[j], rows(state.x[0]), matrix(Q), rows(state.w[0]), state.length[0],
+            model.rest_length, model.inv_rest_length, rows(control.rest_sigma[0]), rows(model.shear),
+            rows(model.inertia), state.scratch[0, 0], force,
+        )  # fmt: skip
     if scene.joints.stiffness.size > 0:
         join(scene.joints, state.x[0], state.v[0], Q, state.w[0], force, torque, state.body_x[0], state.body_v[0],
              state.body_Q[0], state.body_w[0], state.body_force[0], state.body_torque[0])  # fmt: skip

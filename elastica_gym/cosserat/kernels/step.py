@@ -16,6 +16,7 @@ from .plane import slide, slip, stick, to_nodes, touch
 from .queue import take
 from .rods import rods_on_rods
 from .strains import strains, stretch
+from .tension import bend_energy_rates, tension
 
 # steps between two corrections of the directors; powers of two make the test cheap
 ORTHONORMALISE_EVERY = 1024
@@ -67,6 +68,12 @@ def internal(model, state, control, i, first, n, dt):
     logarithm(first, n, m.is_balanced, m.inv_rest_voronoi_length, cosine, kappa, lever)
     bending(first, n, s.length[i], kappa, lever, m.rest_voronoi_length, rows(m.bend), rows(c.rest_kappa[i]),
             m.is_muscular, rate, rows(c.couple[i]), rows(s.couple[i]), before, after)  # fmt: skip
+    if m.is_reciprocal:
+        joint_rate = s.scratch[i, 14]
+        bend_energy_rates(first, n, s.length[i], kappa, rows(c.rest_kappa[i]), m.rest_voronoi_length, rows(m.bend),
+                          rows(m.inv_bend), m.is_muscular, rows(s.couple[i]), joint_rate)  # fmt: skip
+        tension(first, n, x, Q, w, inv_length, m.rest_length, m.inv_rest_length, rows(c.rest_sigma[i]), rows(m.shear),
+                rows(m.inertia), joint_rate, stress)  # fmt: skip
     balance(first, n, stress, before, after, m.mass, m.gravity, m.is_viscous, v, w, s.length[i],
             (m.viscosity[0], m.viscosity[1]), force, torque)  # fmt: skip
 
