@@ -196,7 +196,8 @@ def _gap(x, radius, slots, centre, axis, length, thickness):
         # (a ghost has no section)
         if radius[k] > 0.0:
             first = column(x, k)
-            depth, _, _ = overlap(first, plus(column(x, k + 1), -1.0, first), radius[k], start, edge, thickness)
+            way = plus(column(x, k + 1), -1.0, first)
+            depth, _, _, _ = overlap(first, way, radius[k], start, edge, thickness, False)
             least = -depth if -depth < least else least
     return least
 
@@ -217,7 +218,7 @@ def _feel_object(model, state, i, b, pose, row, at, inv_length):
     hx, hz = pose.heading[i, 0], pose.heading[i, 1]
     place, axis = vector(state.body_x[i, b]), vector(state.body_Q[i, b, 2])
     length, radius = model.cylinders.length[b], model.cylinders.radius[b]
-    gap = _gap(state.x[i], state.radius[i], model.mass.size - 1, place, axis, length, radius)
+    gap = _gap(state.x[i], model.contact_radius, model.mass.size - 1, place, axis, length, radius)
     for c in range(3):
         pose.objects[i, b, c] = place[c]
     pose.gaps[i, b] = gap

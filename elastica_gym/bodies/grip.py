@@ -66,7 +66,7 @@ def grip(body: Body, state: State) -> Grip:
     thing, n_envs = body.model.cylinders, len(state.x)
     gaps = np.zeros((n_envs, int(body.model.n_elements[0])))
     spans, windings, counts = np.zeros((n_envs, 2)), np.zeros((n_envs, 2)), np.zeros((n_envs, 2), dtype=np.int64)
-    _measure(state.x, state.radius, first, arms, state.body_x, state.body_Q, float(thing.length[0]),
+    _measure(state.x, body.model.contact_radius, first, arms, state.body_x, state.body_Q, float(thing.length[0]),
              float(thing.radius[0]), gaps, spans, windings, counts)  # fmt: skip
     centre, axis = state.body_x[:, 0], state.body_Q[:, 0, 2]
     return Grip(
@@ -98,7 +98,7 @@ def _measure(x, radius, slot, arms, body_x, body_Q, length, thickness, gaps, spa
         for k in range(gaps.shape[1]):
             first = column(x[i], slot + k)
             way = plus(column(x[i], slot + k + 1), -1.0, first)
-            depth, _, _ = overlap(first, way, radius[i, slot + k], start, edge, thickness)
+            depth, _, _, _ = overlap(first, way, radius[slot + k], start, edge, thickness, False)
             gaps[i, k] = -depth
         for arm in range(arms.shape[0]):
             azimuth = winding = begin = end = deepest = 0.0

@@ -97,7 +97,7 @@ def build_model(
 
 
 _SCALAR = ("rest_length", "inv_rest_length", "rest_voronoi_length", "inv_rest_voronoi_length", "volume_root",
-           "mass", "inv_mass", "damping_rate")  # fmt: skip
+           "contact_radius", "mass", "inv_mass", "damping_rate")  # fmt: skip
 _ROWS = {"shear": 3, "bend": 3, "inv_bend": 3, "inertia": 3, "inv_inertia": 3, "share": 2, "weight": 2, "viscosity": 2}
 
 
@@ -111,7 +111,7 @@ def lay_out(fields: Mapping[str, Array], rod: Continuum, start: int) -> None:
     for name, where, value in (
         ("mass", nodes, m), ("inv_mass", nodes, rod.inv_nodal_mass), ("damping_rate", nodes, rod.damping_rate),
         ("rest_length", elements, rod.rest_length), ("inv_rest_length", elements, 1.0 / rod.rest_length),
-        ("volume_root", elements, rod.radius * np.sqrt(rod.rest_length)),
+        ("volume_root", elements, rod.radius * np.sqrt(rod.rest_length)), ("contact_radius", elements, rod.radius),
         ("shear", elements, rod.shear_stiffness), ("inertia", elements, rod.inertia),
         ("inv_inertia", elements, rod.inv_inertia), ("share", elements, share),
         ("weight", elements, np.stack([m[:-1], m[1:]]) / (m[:-1] + m[1:])),

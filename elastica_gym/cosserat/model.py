@@ -129,6 +129,8 @@ class Model(NamedTuple):
     """1 / D^ [1/m], one at ghosts, (L,)"""
     volume_root: Array
     """Square root of element volume over pi, r sqrt(l) [m^(3/2)], (L,)"""
+    contact_radius: Array
+    """Radius of each element to what it touches, that at rest [m], (L,)"""
     shear: Array
     """Diagonal of the shear and stretch stiffness S [N], (3, L)"""
     bend: Array

@@ -60,12 +60,12 @@ def ground_clearance(body, state):
 
 @numba.njit
 def depth(a, e, r1, b, f, r2):
-    return overlap(a, e, r1, b, f, r2)[0]
+    return overlap(a, e, r1, b, f, r2, True)[0]
 
 
 def self_overlap(body, state):
     """Return how deep the surfaces of elements that touch are in each other [m]."""
-    x, radius, slots = state.x[0], state.radius[0], state.x.shape[2]
+    x, radius, slots = state.x[0], body.model.contact_radius, state.x.shape[2]
     deepest = 0.0
     for pair in state.pairs[0, : state.n_pairs[0]]:
         low, high = divmod(int(pair), slots)
@@ -172,7 +172,7 @@ def part_of(body, slot):
 
 def overlaps(body, state):
     """Return how deep parts of the body are in each other, by the names of both [m]."""
-    x, radius, found = state.x[0], state.radius[0], {}
+    x, radius, found = state.x[0], body.model.contact_radius, {}
     for pair in state.pairs[0, : state.n_pairs[0]]:
         low, high = divmod(int(pair), state.x.shape[2])
         if state.rod_touch[0, low] > 0.0 and state.rod_touch[0, high] > 0.0:

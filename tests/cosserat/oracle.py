@@ -1,7 +1,6 @@
 """The same scene in PyElastica 1.0.0, built from our own descriptions of rods, planes, waves and cylinders.
 
-Contact that docs/differences.md lists as different is corrected, by default: PyElastica's own closest points
-and forces, a pair at a time, put together as ours are.
+Contact that docs/differences.md lists as different is corrected, by default: written once more, a pair at a time.
 """
 
 import itertools
@@ -10,15 +9,10 @@ from typing import Any
 
 import elastica as ea
 import numpy as np
-from elastica._contact_functions import (
-    _calculate_contact_forces_cylinder_plane,
-    _calculate_contact_forces_rod_cylinder,
-    _calculate_contact_forces_rod_rod,
-    _calculate_contact_forces_rod_sphere,
-)
-from elastica.contact_utils import _find_min_dist, _find_min_dist_cylinder_sphere
+from elastica._contact_functions import _calculate_contact_forces_cylinder_plane
 
 from elastica_gym.cosserat import Control, Model, Rod, State, Wave, advance, at_rest, build_model
+from elastica_gym.cosserat.kernels.contact import CENTRING
 from elastica_gym.cosserat.model import Array
 from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
 
@@ -26,8 +20,6 @@ from .scenes import disturb, disturb_body, motion
 
 NO_RAMP = 1e-300
 """A ramp as short as PyElastica allows stands for none [s]"""
-FAR = 1e3
-"""Where what touches nothing is put [m]"""
 
 
 class _Simulator(ea.BaseSystemCollection, ea.Forcing, ea.Damping, ea.Contact):
@@ -137,63 +129,15 @@ class CylinderContact(ea.RodCylinderContact):
     """A rod on a cylinder."""
 
     def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
-        rod, body = system_one, system_two
-        axis, centre = body.director_collection[2, :, 0], body.position_collection[:, 0]
-        start, edge, spin = centre - 0.5 * body.length * axis, body.length * axis, _spin(body, 0)
-        for k in range(rod.n_elems):
-            a, e, middle = _element(rod, k)
-            met = _overlap(a, e, rod.radius[k], start, edge, body.radius)
-            if met is None:
-                continue
-            g, n, point = met
-            arm, body_arm = point - middle, point - centre
-            u = _surface_velocity(rod, k, arm) - body.velocity_collection[:, 0] - np.cross(spin, body_arm)
-            if self.k * g + self.nu * u @ n <= 0.0:
-                continue
-            # the rod's velocity is u, the cylinder's none, and its centre is where the force acts
-            moving = np.repeat(u[:, None], 4, axis=1)
-            force, on_body, torque = np.zeros((3, 4)), np.zeros((3, 1)), np.zeros((3, 1))
-            _calculate_contact_forces_rod_cylinder(
-                _three(a), np.repeat(e[:, None], 3, axis=1), point, start, edge,
-                np.full(3, rod.radius[k] + body.radius), np.full(3, rod.lengths[k] + body.length), force, force,
-                on_body, torque, np.eye(3), moving, np.zeros((3, 1)), self.k, self.nu,
-                self.velocity_damping_coefficient, self.friction_coefficient,
-            )  # fmt: skip
-            f = on_body[:, 0]
-            _load(rod, k, -f, arm)
-            body.external_forces[:, 0] += f
-            body.external_torques[:, 0] += body.director_collection[:, :, 0] @ np.cross(body_arm, f)
+        body = system_two
+        _meet_body(self, system_one, body, body.length * body.director_collection[2, :, 0], body.radius)
 
 
 class SphereContact(ea.RodSphereContact):
     """A rod on a sphere."""
 
     def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
-        rod, ball = system_one, system_two
-        centre, spin = ball.position_collection[:, 0], _spin(ball, 0)
-        for k in range(rod.n_elems):
-            a, e, middle = _element(rod, k)
-            towards = _find_min_dist_cylinder_sphere(a, e, centre)[0]
-            d = np.linalg.norm(towards)
-            g, n = rod.radius[k] + ball.radius - d, towards / d
-            if g <= 0.0:
-                continue
-            point = centre - (ball.radius - 0.5 * g) * n
-            arm, ball_arm = point - middle, point - centre
-            u = _surface_velocity(rod, k, arm) - ball.velocity_collection[:, 0] - np.cross(spin, ball_arm)
-            if self.k * g + self.nu * u @ n <= 0.0:
-                continue
-            # as above
-            moving, force, on_ball = np.repeat(u[:, None], 4, axis=1), np.zeros((3, 4)), np.zeros((3, 1))
-            _calculate_contact_forces_rod_sphere(
-                _three(a), np.repeat(e[:, None], 3, axis=1), centre, np.full(3, rod.radius[k] + ball.radius),
-                np.full(3, rod.lengths[k] + 2.0 * ball.radius), force, on_ball, moving, np.zeros((3, 1)), self.k,
-                self.nu, self.velocity_damping_coefficient, self.friction_coefficient,
-            )  # fmt: skip
-            f = on_ball[:, 0]
-            _load(rod, k, -f, arm)
-            ball.external_forces[:, 0] += f
-            ball.external_torques[:, 0] += ball.director_collection[:, :, 0] @ np.cross(ball_arm, f)
+        _meet_body(self, system_one, system_two, np.zeros(3), system_two.radius)
 
 
 class RimContact(ea.CylinderPlaneContact):
@@ -232,9 +176,10 @@ class SelfContact(ea.RodSelfContact):
     def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
         rod = system_one
         x = rod.position_collection
-        middle, reach = 0.5 * (x[:, 1:] + x[:, :-1]), rod.radius + 0.5 * rod.lengths
+        radius = _rest_radii(rod)
+        middle, reach = 0.5 * (x[:, 1:] + x[:, :-1]), radius + 0.5 * rod.lengths
         for i in range(rod.n_elems):
-            skip = int(1 + np.ceil(0.8 * np.pi * rod.radius[i] / rod.lengths[i]))
+            skip = int(1 + np.ceil(0.8 * np.pi * radius[i] / rod.lengths[i]))
             near = np.linalg.norm(middle - middle[:, i : i + 1], axis=0) < reach + reach[i]
             for j in np.flatnonzero(near[: max(i - skip + 1, 0)]):
                 _meet(rod, j, rod, i, self.k, self.nu)
@@ -242,60 +187,94 @@ class SelfContact(ea.RodSelfContact):
 
 def _meet(one: Any, i: int, two: Any, j: int, k: float, nu: float) -> None:
     """Add the forces between an element of one rod and an element of another."""
-    a, e, middle = _element(one, i)
-    b, f, other_middle = _element(two, j)
-    met = _overlap(a, e, one.radius[i], b, f, two.radius[j])
+    first, second = _element(one, i), _element(two, j)
+    between = first[0] + 0.5 * first[1] - second[0] - 0.5 * second[1]
+    if np.linalg.norm(between) > 0.5 * (one.lengths[i] + two.lengths[j]) + first[2] + second[2]:
+        return
+    met = _overlap(*first, *second, CENTRING * second[2] ** 2)
     if met is None:
         return
-    g, n, point = met
-    arm, other_arm = point - middle, point - other_middle
-    u = _surface_velocity(one, i, arm) - _surface_velocity(two, j, other_arm)
-    if k * g + nu * u @ n <= 0.0:
-        return
-    forces, still = [np.zeros((3, 4)), np.zeros((3, 4))], np.zeros((3, 4))
-    _calculate_contact_forces_rod_rod(
-        _three(a), np.full(3, one.radius[i]), np.full(3, one.lengths[i]), np.repeat(one.tangents[:, i : i + 1], 3, 1),
-        np.repeat(u[:, None], 4, axis=1), still, forces[0], _three(b, -FAR), np.full(3, two.radius[j]),
-        np.full(3, two.lengths[j]), np.repeat(two.tangents[:, j : j + 1], 3, 1), still, still, forces[1], k, nu,
-    )  # fmt: skip
-    _load(one, i, forces[0].sum(axis=1), arm)
-    _load(two, j, forces[1].sum(axis=1), other_arm)
+    g, n, s, t = met
+    u = _axis_velocity(one, i, s) - _axis_velocity(two, j, t)
+    f = max(k * g + nu * u @ n, 0.0) * n
+    _load(one, i, s, -f)
+    _load(two, j, t, f)
 
 
-def _three(a: Array, far: float = FAR) -> Array:
-    """Return the start of an element between two that are far away: PyElastica treats end elements otherwise."""
-    return np.stack([a + far, a, a + 2.0 * far], axis=1)
+def _meet_body(law: Any, rod: Any, body: Any, edge: Array, radius: float) -> None:
+    """Add the forces between the elements of a rod and a body, an axis swept by a ball."""
+    centre, spin = body.position_collection[:, 0], _spin(body, 0)
+    start, longest = centre - 0.5 * edge, float(np.linalg.norm(edge))
+    for k in range(rod.n_elems):
+        a, e, r = _element(rod, k)
+        if np.linalg.norm(a + 0.5 * e - centre) > 0.5 * (longest + rod.lengths[k]) + r + radius:
+            continue
+        met = _overlap(a, e, r, start, edge, radius, 0.0)
+        if met is None:
+            continue
+        g, n, s, _ = met
+        arm = (r - 0.5 * g) * n
+        body_arm = a + s * e + arm - centre
+        u = _axis_velocity(rod, k, s) + np.cross(_spin(rod, k), arm)
+        u = u - body.velocity_collection[:, 0] - np.cross(spin, body_arm)
+        N = max(law.k * g + law.nu * u @ n, 0.0)
+        slip = u - (u @ n) * n
+        most = law.friction_coefficient * N
+        rub = min(law.velocity_damping_coefficient, most / np.linalg.norm(slip)) * slip if slip.any() else 0.0 * slip
+        f = N * n + rub
+        _load(rod, k, s, -f)
+        rod.external_torques[:, k] -= rod.director_collection[:, :, k] @ np.cross(arm, rub)
+        body.external_forces[:, 0] += f
+        body.external_torques[:, 0] += body.director_collection[:, :, 0] @ np.cross(body_arm, f)
 
 
-def _element(rod: Any, k: int) -> tuple[Array, Array, Array]:
-    """Return where an element starts, its edge and its centre."""
-    a, e = rod.position_collection[:, k].copy(), rod.lengths[k] * rod.tangents[:, k]
-    return a, e, a + 0.5 * e
+def _rest_radii(rod: Any) -> Array:
+    return np.sqrt(rod.volume / (np.pi * rod.rest_lengths))
 
 
-def _overlap(a: Array, e: Array, r1: float, b: Array, f: Array, r2: float) -> tuple[float, Array, Array] | None:
-    """Return how deep two segments overlap, n and the middle of the overlap, if they do."""
-    towards, on_second, _ = _find_min_dist(a, e, b, f)
-    d = np.linalg.norm(towards)
-    g = r1 + r2 - d
-    n = towards / d
-    return (g, n, on_second - (r2 - 0.5 * g) * n) if g > 0.0 else None
+def _element(rod: Any, k: int) -> tuple[Array, Array, float]:
+    """Return where an element starts, its edge and its radius at rest."""
+    return rod.position_collection[:, k].copy(), rod.lengths[k] * rod.tangents[:, k], float(_rest_radii(rod)[k])
+
+
+def _overlap(
+    a: Array, e: Array, r1: float, b: Array, f: Array, r2: float, c2: float
+) -> tuple[float, Array, float, float] | None:
+    """Return how deep two segments overlap, n and where their closest points are, if they do.
+
+    Closest points are the best of those inside and on the four borders of [0, 1] x [0, 1].
+    """
+    c1, between = CENTRING * r1**2, b - a
+
+    def squared(s: float, t: float) -> float:
+        towards = between + t * f - s * e
+        return float(towards @ towards + c1 * (s - 0.5) ** 2 + c2 * (t - 0.5) ** 2)
+
+    ee, ff, ef = e @ e + c1, f @ f + c2, e @ f
+    on_e, on_f = between @ e + 0.5 * c1, between @ f - 0.5 * c2
+    places = [(s, float(np.clip((s * ef - on_f) / ff, 0.0, 1.0)) if ff > 0.0 else 0.0) for s in (0.0, 1.0)]
+    places += [(float(np.clip((t * ef + on_e) / ee, 0.0, 1.0)), t) for t in (0.0, 1.0)]
+    if ff > 0.0:
+        s, t = np.linalg.solve([[ee, -ef], [-ef, ff]], [on_e, -on_f])
+        places += [(float(s), float(t))] if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0 else []
+    s, t = min(places, key=lambda place: squared(*place))
+    d = np.sqrt(squared(s, t))
+    return (r1 + r2 - d, (between + t * f - s * e) / d, s, t) if d < r1 + r2 else None
 
 
 def _spin(system: Any, k: int) -> Array:
     return system.director_collection[:, :, k].T @ system.omega_collection[:, k]
 
 
-def _surface_velocity(rod: Any, k: int, arm: Array) -> Array:
+def _axis_velocity(rod: Any, k: int, s: float) -> Array:
     v = rod.velocity_collection
-    return 0.5 * (v[:, k] + v[:, k + 1]) + np.cross(_spin(rod, k), arm)
+    return (1.0 - s) * v[:, k] + s * v[:, k + 1]
 
 
-def _load(rod: Any, k: int, f: Array, arm: Array) -> None:
-    """Add a force on an element, ``arm`` from its centre."""
-    rod.external_forces[:, k] += 0.5 * f
-    rod.external_forces[:, k + 1] += 0.5 * f
-    rod.external_torques[:, k] += rod.director_collection[:, :, k] @ np.cross(arm, f)
+def _load(rod: Any, k: int, s: float, f: Array) -> None:
+    """Add a force on the point s of an element."""
+    rod.external_forces[:, k] += (1.0 - s) * f
+    rod.external_forces[:, k + 1] += s * f
 
 
 def _law(contact: Contact, *, friction: bool) -> dict[str, float]:

@@ -146,9 +146,9 @@ def exact_rotation_vectors(Q: Array) -> NDArray[np.longdouble]:
     return -np.where(size > 0.0, theta / np.where(size > 0.0, size, 1.0), 1.0) * a
 
 
-def energy(rod: Rod, model: Model, state: State) -> float:
+def energy(rod: Rod, model: Model, state: State, number: int = 0) -> float:
     """Return kinetic and elastic energy [J]."""
-    x, v, Q, w = motion(model, state)
+    x, v, Q, w = motion(model, state, rod=number)
     e = np.linalg.norm(np.diff(x, axis=1), axis=0) / rod.rest_length
     sigma = np.einsum("ijk,jk->ik", Q, np.diff(x, axis=1)) / rod.rest_length - np.array([[0.0], [0.0], [1.0]])
     kappa = exact_rotation_vectors(Q).astype(np.float64) / rod.rest_voronoi_length

@@ -1,17 +1,24 @@
 """Contact of two round things: closest points of their axes, and the force of one on the other.
 
-Rods and cylinders touch as segments swept by a sphere of their radius. n points from the first to
-the second, g is the overlap r1 + r2 - d of their surfaces, and u the velocity of the first less that
-of the second, both where the overlap is in the middle. Action and reaction act there, so that they
-change neither momentum nor angular momentum.
+Rods and cylinders touch as segments swept by a sphere of their radius, which is an element's at rest. n points
+from the first to the second, g is the overlap r1 + r2 - d of their surfaces, and u the velocity of the
+first less that of the second.
+
+The spring's energy k g^2/2 depends on positions alone, so its force goes to nodes alone: N n by the weights
+1 - s and s of the point (1 - s) x_k + s x_k+1 where it acts. As the closest points are stationary, this is
+the energy's gradient: contact keeps energy, momentum and angular momentum. Friction acts where the overlap is
+in the middle, on the line through both points. (Radii that follow the stretch would push the nodes of an
+element apart by N r/(2 l), which no step for arms stands where l < r.)
 """
+
+from math import sqrt
 
 from .compiler import ONE, inner
 from .roots import TINY
 from .vectors import add_column, column, cross, dot, norm, plus, times, to_lab_at, to_material_at
 
-# squared sine of the angle below which two segments count as parallel
-PARALLEL = 1e-6
+# how strongly closest points are drawn to the middles of elements, per squared radius
+CENTRING = 0.03
 
 
 @inner
@@ -22,49 +29,49 @@ def clip(t):
 
 
 @inner
-def closest(a, e, b, f):
-    """Return s and t of the closest points a + s e and b + t f of two segments (Ericson 2005, section 5.1.9).
+def closest(a, e, c1, b, f, c2):
+    """Return where |b + t f - a - s e|^2 + c1 (s - 1/2)^2 + c2 (t - 1/2)^2 is least, s and t in [0, 1], and the least.
 
-    Where parallel segments run side by side, s is the middle of the stretch that they share.
+    They are the closest points of two segments (Ericson 2005, section 5.1.9), drawn to their middles a little:
+    as parallel segments turn, closest points would jump from end to end.
     """
     r = plus(a, -1.0, b)
-    ee, ff, ef = dot(e, e), dot(f, f), dot(e, f)
-    er, fr = dot(e, r), dot(f, r)
-    sine = ee * ff - ef * ef
-    if sine > PARALLEL * ee * ff:
-        s = clip((ef * fr - er * ff) / sine)
-    else:
-        p, q = -er / ee, (ef - er) / ee
-        low, high = (p, q) if p < q else (q, p)
-        s = clip(0.5 * ((low if low > 0.0 else 0.0) + (high if high < 1.0 else 1.0)))
+    ee, ff, ef = dot(e, e) + c1, dot(f, f) + c2, dot(e, f)
+    er, fr = dot(e, r) - 0.5 * c1, dot(f, r) + 0.5 * c2
+    s = clip((ef * fr - er * ff) / (ee * ff - ef * ef))
     t = clip((ef * s + fr) / ff)
-    return clip((ef * t - er) / ee), t
+    s = clip((ef * t - er) / ee)
+    towards = plus(plus(b, t, f), -1.0, plus(a, s, e))
+    return s, t, towards, dot(towards, towards) + c1 * (s - 0.5) * (s - 0.5) + c2 * (t - 0.5) * (t - 0.5)
 
 
 @inner
-def overlap(a, e, r1, b, f, r2):
-    """Return how deep two segments a + s e and b + t f of radii r1 and r2 overlap, n, and the middle of the overlap."""
-    s, t = closest(a, e, b, f)
-    on_axis = plus(a, s, e)
-    towards = plus(plus(b, t, f), -1.0, on_axis)
-    d = norm(towards)
-    g = r1 + r2 - d
+def overlap(a, e, r1, b, f, r2, is_rod):
+    """Return how deep segments of radii r1 and r2 overlap, n, and s and t of their closest points a + s e and b + t f.
+
+    The first is an element, the second another one or the axis of a body.
+    """
+    s, t, towards, squared = closest(a, e, CENTRING * r1 * r1, b, f, CENTRING * r2 * r2 if is_rod else 0.0)
+    d = sqrt(squared)
     # axes that cross have no direction to part in
-    n = times(1.0 / d if d * d > TINY else 0.0, towards)
-    return g, n, plus(on_axis, r1 - 0.5 * g, n)
+    return r1 + r2 - d, times(1.0 / d if squared > TINY else 0.0, towards), s, t
 
 
 @inner
-def press(g, n, u, stiffness, damping, friction, slip_damping):
-    """Return the force on the second, and N: k g + nu u.n along n, never adhesive, and min(c |u_t|, mu N) along u_t."""
-    approach = dot(u, n)
+def normal_force(g, approach, stiffness, damping):
+    """Return N: k g + nu times the velocity of approach, never adhesive."""
     N = stiffness * g + damping * approach
-    N = N if N > 0.0 else 0.0
-    slip = plus(u, -approach, n)
+    return N if N > 0.0 else 0.0
+
+
+@inner
+def friction_force(n, u, N, friction, slip_damping):
+    """Return the friction on the second, min(c |u_t|, mu N) along u_t, of surfaces whose velocities differ by u."""
+    slip = plus(u, -dot(u, n), n)
     speed = norm(slip)
     drag = slip_damping * speed
     drag = drag if drag < friction * N else friction * N
-    return plus(times(N, n), drag / speed if speed > 0.0 else 0.0, slip), N
+    return times(drag / speed if speed > 0.0 else 0.0, slip)
 
 
 @inner
@@ -74,14 +81,25 @@ def middle(x, k):
 
 
 @inner
-def surface_velocity(v, Q, w, k, arm):
-    """Return the velocity of a point of element k that is ``arm`` from its centre."""
-    return plus(middle(v, k), 1.0, cross(to_lab_at(Q, k, column(w, k)), arm))
+def axis_velocity(v, k, s):
+    """Return the velocity of the point (1 - s) x_k + s x_k+1 of element k."""
+    return plus(times(1.0 - s, column(v, k)), s, column(v, k + ONE))
 
 
 @inner
-def load(force, torque, Q, k, f, arm):
-    """Add a force f on element k, ``arm`` from its centre: half of it to each node, and the torque to the element."""
-    add_column(force, k, 0.5, f)
-    add_column(force, k + ONE, 0.5, f)
-    add_column(torque, k, 1.0, to_material_at(Q, k, cross(arm, f)))
+def spin_velocity(Q, w, k, arm):
+    """Return the velocity that the spin of element k adds at ``arm`` from its axis."""
+    return cross(to_lab_at(Q, k, column(w, k)), arm)
+
+
+@inner
+def load(force, k, s, f):
+    """Add a force f at the point s of element k to its nodes."""
+    add_column(force, k, 1.0 - s, f)
+    add_column(force, k + ONE, s, f)
+
+
+@inner
+def twist(torque, Q, k, a):
+    """Add a torque a, in the lab, to element k."""
+    add_column(torque, k, 1.0, to_material_at(Q, k, a))

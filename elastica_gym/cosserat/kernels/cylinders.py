@@ -7,7 +7,7 @@ its ends are domes to them. Planes meet it as it is, at the rims of its flat end
 from math import sqrt
 
 from .compiler import ONE, apart, inner, stage
-from .contact import load, middle, overlap, press, surface_velocity
+from .contact import axis_velocity, friction_force, load, normal_force, overlap, spin_velocity, twist
 from .roots import inverse_sqrt
 from .vectors import add, column, cross, dot, norm, plus, times, to_lab, to_material, vector
 
@@ -40,12 +40,11 @@ def clearance(first, n, x, length, radius, body_radius, body_length, centre, axi
 
 
 @apart
-def rods_on_cylinders(first, n, gap, x, v, Q, w, length, radius, cylinders, bodies, force, torque, touch):
-    """Add the forces between rod elements, from slot ``first`` to n - 1, and cylinders where they overlap.
+def rods_on_cylinders(first, last, gap, x, v, Q, w, length, radius, cylinders, bodies, force, torque, touch):
+    """Add the forces between rod elements, from slot ``first`` to ``last`` - 1, and cylinders where they overlap.
 
-    Half of the force on an element goes to each of its nodes, and its velocity is their mean. Both
-    velocities include the spin, and both get the torque of the force about their centre. Adds the
-    normal forces to ``touch``.
+    Both velocities include the spin, and the cylinder gets the torque of the force about its centre.
+    Adds the normal forces to ``touch``.
     """
     c = cylinders
     body_x, body_v, body_Q, body_w, body_force, body_torque = bodies
@@ -53,19 +52,22 @@ def rods_on_cylinders(first, n, gap, x, v, Q, w, length, radius, cylinders, bodi
         centre, axis, body_radius = vector(body_x[b]), vector(body_Q[b, 2]), c.radius[b]
         start, edge = plus(centre, -0.5 * c.length[b], axis), times(c.length[b], axis)
         velocity, spin = vector(body_v[b]), to_lab(body_Q[b], vector(body_w[b]))
-        clearance(first, n, (x[0], x[1], x[2]), length, radius, body_radius, c.length[b], centre, axis, gap)
-        for k in range(first, n):
+        clearance(first, last, (x[0], x[1], x[2]), length, radius, body_radius, c.length[b], centre, axis, gap)
+        for k in range(first, last):
             if gap[k] < 0.0:
                 a = column(x, k)
                 e = plus(column(x, k + ONE), -1.0, a)
-                g, normal, point = overlap(a, e, radius[k], start, edge, body_radius)
+                g, n, s, t = overlap(a, e, radius[k], start, edge, body_radius, False)
                 if g > 0.0:
-                    arm, body_arm = plus(point, -1.0, middle(x, k)), plus(point, -1.0, centre)
-                    u = surface_velocity(v, Q, w, k, arm)
-                    u = plus(u, -1.0, plus(velocity, 1.0, cross(spin, body_arm)))
-                    f, N = press(g, normal, u, c.rod_stiffness[b], c.rod_damping[b], c.rod_friction[b],
-                                 c.rod_slip_damping[b])  # fmt: skip
-                    load(force, torque, Q, k, times(-1.0, f), arm)
+                    arm = times(radius[k] - 0.5 * g, n)
+                    body_arm = plus(plus(plus(start, t, edge), 0.5 * g - body_radius, n), -1.0, centre)
+                    u = plus(axis_velocity(v, k, s), -1.0, plus(velocity, 1.0, cross(spin, body_arm)))
+                    N = normal_force(g, dot(u, n), c.rod_stiffness[b], c.rod_damping[b])
+                    u = plus(u, 1.0, spin_velocity(Q, w, k, arm))
+                    rub = friction_force(n, u, N, c.rod_friction[b], c.rod_slip_damping[b])
+                    f = plus(times(N, n), 1.0, rub)
+                    load(force, k, s, times(-1.0, f))
+                    twist(torque, Q, k, cross(rub, arm))
                     add(body_force[b], 1.0, f)
                     add(body_torque[b], 1.0, to_material(body_Q[b], cross(body_arm, f)))
                     touch[k] += N

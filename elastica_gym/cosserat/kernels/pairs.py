@@ -1,6 +1,6 @@
 """Contact of single pairs, each with its own law: rods on rods, on rigid bodies, and these on planes."""
 
-from math import pi, sqrt
+from math import pi
 
 import numpy as np
 
@@ -48,9 +48,8 @@ def list_pairs(contacts, x, length, radius, reach, margin):
         for i in range(gather(a, c.elements, x, reach, margin, c.cell, c.bucket, c.member, c.near)):
             high = c.elements[c.near[i]]
             one, two = c.rod_of[low], c.rod_of[high]
-            # as thin and as long as the element can become until it has strayed
-            longest = length[high] + 2.0 * c.stray
-            if one != two or not is_close(low, high, radius[high] * sqrt(length[high] / longest), longest):
+            # as long as the element can become until it has strayed
+            if one != two or not is_close(low, high, radius[high], length[high] + 2.0 * c.stray):
                 p, end = first_row(c, one, two)
                 while p < end and c.other[p] == two:
                     if n_pairs < c.pairs.shape[0]:

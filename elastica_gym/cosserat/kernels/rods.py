@@ -13,8 +13,8 @@ import numpy as np
 
 from ..model import NEAR
 from .compiler import FIRST, ONE, apart, inner, stage
-from .contact import load, middle, overlap, press, surface_velocity
-from .vectors import column, dot, plus, times
+from .contact import axis_velocity, friction_force, load, middle, normal_force, overlap, spin_velocity, twist
+from .vectors import column, cross, dot, plus, times
 
 
 @inner
@@ -130,8 +130,7 @@ def rods_on_rods(
 ):  # fmt: skip
     """Add the forces between elements of rods that overlap: of two rods, or of one far enough from each other.
 
-    Half of the force on an element goes to each of its nodes; both get the torque of the force about
-    their centre. Adds the normal forces to ``touch``. Takes the pairs that are listed, lists them anew
+    Adds the normal forces to ``touch``. Takes the pairs that are listed, lists them anew
     if an element may have come nearer than the list allows for, and returns how many there are.
     """
     margin, slots = 2.0 * contact.stray, begin.size
@@ -165,12 +164,19 @@ def meet(contact, j, k, x, v, Q, w, length, radius, force, torque, touch):
     if dot(between, between) < reach * reach:
         a, b = column(x, j), column(x, k)
         e, f = plus(column(x, j + ONE), -1.0, a), plus(column(x, k + ONE), -1.0, b)
-        g, normal, point = overlap(a, e, radius[j], b, f, radius[k])
+        g, n, s, t = overlap(a, e, radius[j], b, f, radius[k], True)
         if g > 0.0:
-            arm_j, arm_k = plus(point, -1.0, at_j), plus(point, -1.0, at_k)
-            u = plus(surface_velocity(v, Q, w, j, arm_j), -1.0, surface_velocity(v, Q, w, k, arm_k))
-            push, N = press(g, normal, u, contact.stiffness, contact.damping, contact.friction, contact.slip_damping)
-            load(force, torque, Q, j, times(-1.0, push), arm_j)
-            load(force, torque, Q, k, push, arm_k)
+            u = plus(axis_velocity(v, j, s), -1.0, axis_velocity(v, k, t))
+            N = normal_force(g, dot(u, n), contact.stiffness, contact.damping)
+            push = times(N, n)
+            if contact.friction > 0.0:
+                arm_j, arm_k = times(radius[j] - 0.5 * g, n), times(0.5 * g - radius[k], n)
+                u = plus(u, 1.0, plus(spin_velocity(Q, w, j, arm_j), -1.0, spin_velocity(Q, w, k, arm_k)))
+                rub = friction_force(n, u, N, contact.friction, contact.slip_damping)
+                push = plus(push, 1.0, rub)
+                twist(torque, Q, j, cross(rub, arm_j))
+                twist(torque, Q, k, cross(arm_k, rub))
+            load(force, j, s, times(-1.0, push))
+            load(force, k, t, push)
             touch[j] += N
             touch[k] += N

@@ -4,9 +4,9 @@ from math import sqrt
 
 import numpy as np
 
-from .compiler import apart, inner
-from .contact import load, middle
-from .vectors import dot, plus, times, to_lab_at, vector
+from .compiler import ONE, apart, inner
+from .contact import middle, twist
+from .vectors import add_column, cross, dot, plus, times, to_lab_at, vector
 
 # distances are rounded to so many parts of a metre, so that what is at rest stays at rest
 PARTS = 1e12
@@ -22,6 +22,14 @@ def rounded(a):
 def reach(k, offset, length, rest_length, radius):
     """Return how far from its axis an element is joined: its half of the offset grows with its radius [m]."""
     return radius[k] + 0.5 * offset * sqrt(rest_length[k] / length[k])
+
+
+@inner
+def load(force, torque, Q, k, f, arm):
+    """Add a force f on element k, ``arm`` from its centre: half of it to each node, and the torque to the element."""
+    add_column(force, k, 0.5, f)
+    add_column(force, k + ONE, 0.5, f)
+    twist(torque, Q, k, cross(arm, f))
 
 
 @apart

@@ -125,11 +125,11 @@ def external_loads(model, scene, state, control, hooks, n):
     if scene.body_contacts.body.size > 0:
         bodies = s.body_x[0], s.body_v[0], s.body_Q[0], s.body_w[0], s.body_force[0], s.body_torque[0]
         touch_bodies(scene.body_contacts, model.cylinders, s.scratch[0], s.x[0], s.v[0], Q, s.w[0], s.length[0],
-                     s.radius[0], bodies, force, torque)  # fmt: skip
+                     model.contact_radius, bodies, force, torque)  # fmt: skip
     if scene.rod_contacts.stiffness.size > 0:
         s.n_pairs[0] = touch_rods(
             n, scene.rod_contacts, s.n_pairs[0], rows(s.listed_x[0]), s.listed_reach[0], s.scratch[0], s.x[0], s.v[0],
-            Q, s.w[0], s.length[0], s.radius[0], force, torque,
+            Q, s.w[0], s.length[0], model.contact_radius, force, torque,
         )  # fmt: skip
     return answer(hooks.loads, time)
 

@@ -96,7 +96,7 @@ def applied(model, state, control, i, n, time):
 def contacts(model, state, i, n):
     """Add the loads of contact between rods and bodies in environment i, and the weight of bodies."""
     m, s = model, state
-    x, v, Q, w, length, radius = s.x[i], s.v[i], s.Q[i], s.w[i], s.length[i], s.radius[i]
+    x, v, Q, w, length, radius = s.x[i], s.v[i], s.Q[i], s.w[i], s.length[i], m.contact_radius
     if m.cylinders.mass.size > 0:
         bodies = s.body_x[i], s.body_v[i], s.body_Q[i], s.body_w[i], s.body_force[i], s.body_torque[i]
         weigh_bodies(m.cylinders.mass, m.gravity, s.body_force[i], s.body_torque[i])

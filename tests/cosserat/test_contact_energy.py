@@ -1,0 +1,160 @@
+"""Contact keeps energy: its force is the gradient of its spring's energy, and what collides parts as fast."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import elastica_gym.cosserat as ea
+from elastica_gym.cosserat import Rod, advance, at_rest, build_model, stable_time_step
+from elastica_gym.cosserat.model import Array
+from elastica_gym.cosserat.surroundings import Contact, Cylinder
+
+from .scenes import energy, loop, motion
+
+R, N, SPEED = 1e-3, 10, 0.1
+"""Radius [m], elements and speed of approach [m/s] of what collides"""
+MATERIAL = dict(density=1000.0, youngs_modulus=3e5, shear_modulus=1e5)
+GAP = 0.02 * R
+"""Gap at the start [m]"""
+X, Y, Z = np.eye(3)
+
+ratios = st.sampled_from([0.3, 1.0, 3.0, 8.0])
+"""Length over radius of elements"""
+places = st.floats(-4.99, 4.99)
+"""Where a rod touches, in elements from its middle"""
+
+
+class Collision(NamedTuple):
+    """Energy before, the largest and the least after [J], and how long they touched, in steps."""
+
+    before: float
+    most: float
+    least: float
+    steps: int
+
+
+def rod_across(ratio: float, place: float, direction: Array, centre: Array) -> Rod:
+    """Return a straight rod whose point ``place`` elements from its middle is at ``centre``."""
+    length = N * ratio * R
+    start, normal = centre - (0.5 + place / N) * length * direction, np.cross(direction, X + 2.0 * Y + Z)
+    return Rod.straight(N, start=tuple(start), direction=tuple(direction), normal=tuple(normal), length=length, radius=R,
+                        **MATERIAL)  # fmt: skip
+
+
+def collide(rods: list[Rod], velocities: list[Array], law: Contact, dt: float, cylinders=()) -> Collision:
+    """Let rods and cylinders fly until they have parted."""
+    model = build_model(rods, rod_contact=law, cylinders=cylinders)
+    state, control = at_rest(model, rods, cylinders=cylinders)
+    for number, velocity in enumerate(velocities):
+        motion(model, state, rod=number)[1][:] = velocity
+
+    def total() -> float:
+        found = sum(energy(rod, model, state, number=number) for number, rod in enumerate(rods))
+        for b in range(len(cylinders)):
+            v, w, table = state.body_v[0, b], state.body_w[0, b], model.cylinders
+            found += 0.5 * float(table.mass[b] * v @ v + table.inertia[b] @ (w * w))
+        return found
+
+    before, touched, apart, after = total(), 0, 0, []
+    while apart < 1000 and touched < 40_000:
+        advance(model, state, control, 0, 1, dt, 20)
+        if state.rod_touch.max() + state.body_touch.max() > 0.0:
+            touched, apart, after = touched + 20, 0, []
+        elif touched:
+            apart += 20
+            after.append(total())
+    return Collision(before, max(after), min(after), touched)
+
+
+def law_for(rod: Rod) -> tuple[Contact, float]:
+    """Return contact without friction and damping that half the stable step allows, and a quarter of that step."""
+    dt = 0.5 * stable_time_step(rod)
+    return Contact(stiffness=rod.nodal_mass[1] * (0.5 / dt) ** 2), 0.25 * dt
+
+
+def require_kept(found: Collision) -> None:
+    assert 0 < found.steps < 40_000
+    assert found.most < 1.01 * found.before
+    assert found.least > 0.99 * found.before
+
+
+several = settings(max_examples=15, deadline=None)
+
+
+@several
+@given(ratio=ratios, place=places, other=places, turn=st.floats(0.0, np.pi))
+def test_two_rods(ratio, place, other, turn):
+    rods = [rod_across(ratio, place, X, np.zeros(3)),
+            rod_across(ratio, other, np.array([np.cos(turn), 0.0, np.sin(turn)]), (2.0 * R + GAP) * Y)]  # fmt: skip
+    law, dt = law_for(rods[0])
+    require_kept(collide(rods, [np.zeros((3, 1)), -SPEED * Y[:, None]], law, dt))
+
+
+@pytest.mark.parametrize("ratio", [0.3, 1.0, 3.0, 6.0, 8.0])
+@pytest.mark.parametrize("places", [(0.0, 0.0), (0.1, 0.1), (0.5, 0.5), (0.0, 0.5)], ids=str)
+def test_two_rods_at_nodes_and_beside_them(ratio, places):
+    rods = [rod_across(ratio, places[0], X, np.zeros(3)), rod_across(ratio, places[1], Z, (2.0 * R + GAP) * Y)]
+    law, dt = law_for(rods[0])
+    require_kept(collide(rods, [np.zeros((3, 1)), -SPEED * Y[:, None]], law, dt))
+
+
+@several
+@given(ratio=ratios, place=places, along=st.floats(-1.2, 1.2), turn=st.floats(0.0, np.pi))
+def test_rod_and_cylinder(ratio, place, along, turn):
+    """Which it strikes between its ends and at the domes beyond them."""
+    rods = [rod_across(ratio, place, X, np.zeros(3))]
+    law, dt = law_for(rods[0])
+    axis, r, half = np.array([np.cos(turn), 0.0, np.sin(turn)]), 3.0 * R, 4.0 * R
+    beyond = max(abs(along) - 1.0, 0.0) * half
+    centre = np.array([0.0, np.sqrt((R + r) ** 2 - beyond**2) + GAP, 0.0]) - along * half * axis
+    body = Cylinder(start=tuple(centre - half * axis), direction=tuple(axis), normal=(0.0, 1.0, 0.0), length=2.0 * half,
+                    radius=r, mass=20.0 * rods[0].nodal_mass[1], rods=law, ground_stiffness=1.0)  # fmt: skip
+    require_kept(collide(rods, [SPEED * Y[:, None]], law, dt, [body]))
+
+
+@several
+@given(ratio=ratios, place=places)
+def test_rod_and_sphere(ratio, place):
+    described = rod_across(ratio, place, X, np.zeros(3))
+    law, dt = law_for(described)
+    rod = ea.CosseratRod.straight_rod(N, described.position[:, 0], X, Y, N * ratio * R, R, MATERIAL["density"],
+                                      youngs_modulus=3e5, shear_modulus=1e5)  # fmt: skip
+    ball, made = ea.Sphere((4.0 * R + GAP) * Y, 3.0 * R, 500.0), Simulator()
+    for system in (rod, ball):
+        made.append(system)
+    made.detect_contact_between(rod, ball).using(ea.RodSphereContact, k=law.stiffness, nu=0.0)
+    made.finalize()
+    rod.velocity_collection[1] = SPEED
+
+    def total() -> float:
+        return (rod.compute_translational_energy() + rod.compute_rotational_energy() + rod.compute_bending_energy()
+                + rod.compute_shear_energy() + ball.compute_translational_energy() + ball.compute_rotational_energy())
+
+    before, stepper = float(total()), ea.PositionVerlet()
+    for _ in range(400):
+        ea.integrate(stepper, made, 100 * dt, 100, progress_bar=False)
+    assert ball.velocity_collection[1, 0] > 0.1 * SPEED
+    assert float(total()) == pytest.approx(before, rel=0.01)
+
+
+class Simulator(ea.BaseSystemCollection, ea.Contact):
+    pass
+
+
+@several
+@given(ratio=st.sampled_from([1.0, 3.0]), slide=st.floats(-0.5, 0.5))
+def test_a_rod_and_itself(ratio, slide):
+    """The ends of a loop pass each other, and one swings down on the other."""
+    n = 40
+    size = 0.2 * n * ratio * R / 1.4
+    rod = loop(n, size=size, gap=2.0 * R + 3.0 * GAP, radius=R, **MATERIAL)
+    rod = replace(rod, rest_kappa=rod.curvature)
+    law, dt = law_for(rod)
+    # faster towards the end
+    s = np.linspace(-1.0, 1.0, n + 1)
+    swing = SPEED * np.where(s > 0.0, s**2, 0.0) * (slide * X - Y)[:, None]
+    require_kept(collide([rod], [swing], law, dt))
