@@ -12,6 +12,7 @@ import yaml
 from agents.checks import BadInputError, choose
 from agents.hyperparameters import algorithm_class, normalize_arguments
 from elastica_gym.envs.gaits import seed_gait
+from elastica_gym.muscles import DIRECTIONS, N_ARMS, N_FUNCTIONS
 
 BASELINES = ("zero", "random", "scripted", "seed_gait")
 
@@ -52,6 +53,27 @@ class RandomPolicy:
         """Return uniform draws from [-1, 1]."""
         shape = batch.single_action_space.shape
         return np.stack([rng.uniform(-1.0, 1.0, shape) for rng in self._generators]).astype(np.float32)
+
+
+class FullStrengthPolicy:
+    """Every muscle at full strength: groups of one arm and direction pull together, in signs drawn every 0.4 s."""
+
+    HOLD = 8
+    """Control steps between two draws"""
+
+    def reset(self, seeds: Sequence[int]) -> None:
+        """Seed one generator per environment, as `RandomPolicy` does."""
+        self._generators = [np.random.default_rng([seed, 2]) for seed in seeds]
+        self._step = 0
+
+    def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
+        """Return activations of -1 and 1."""
+        if self._step % self.HOLD == 0:
+            groups = (len(DIRECTIONS) * N_ARMS, 1)
+            signs = np.stack([rng.choice([-1.0, 1.0], groups) for rng in self._generators])
+            self._actions = np.broadcast_to(signs, (*signs.shape[:2], N_FUNCTIONS)).reshape(len(signs), -1)
+        self._step += 1
+        return self._actions.astype(np.float32)
 
 
 class ScriptedPolicy:

@@ -1,0 +1,119 @@
+"""Print where energy comes from and where it goes under each policy: the work of each kind of load, over the muscles'.
+
+Muscles may put energy in; friction and damping take it out. Whatever else gives energy is a fault that learning may
+live on: loads of strains that derive from no potential (imbalance), ground or contact that return more than they got.
+"""
+
+import dataclasses
+from collections.abc import Iterator
+
+import gymnasium
+from gymnasium.vector import AutoresetMode
+
+from agents.checks import check_bounds, choose, require_extra, run_command
+from agents.seeds import TEST
+from elastica_gym.cosserat.energy import Ledger
+from elastica_gym.envs import IDS
+
+POLICIES = ("random", "full", "scripted", "shipped")
+CONSERVATIVE = {"ground": ("ground reaction", "ground spring"), "contact": ("contact spring",)}
+"""Kinds of load that must give no energy, where what a spring holds at the end is next to nothing"""
+PASSIVE = ("ground friction", "contact friction", "ground damping", "contact damping", "damping")
+"""Kinds of load that must take energy"""
+
+
+@dataclasses.dataclass
+class Arguments:
+    """Audit episodes of every environment under random actions, full strength, its script and its shipped policies."""
+
+    env: tuple[str, ...] = IDS
+    """Environment ids."""
+    policies: tuple[str, ...] = POLICIES
+    """Of random, full, scripted and shipped."""
+    episodes: int = 4
+    """Episodes of each, side by side."""
+    steps: int = 100
+    """Control steps of each episode."""
+    seed: int = TEST.start
+    """Seed of the first episode."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Audit:
+    """Work over episodes, as part of what the muscles did."""
+
+    muscles: float
+    """Work of the muscles, the mean of episodes [J]"""
+    work: dict[str, float]
+    """Work of each kind of load over that of the muscles"""
+    imbalance: float
+    """Energy that the loads of strains made from nothing, over the work of the muscles"""
+
+    @property
+    def gains(self) -> dict[str, float]:
+        """Energy from nothing by source, over the work of the muscles; where there is no fault at most 0."""
+        gains = {name: sum(self.work[kind] for kind in kinds) for name, kinds in CONSERVATIVE.items()}
+        return {"strains": self.imbalance, **gains, **{kind: self.work[kind] for kind in PASSIVE}}
+
+
+def audit(env_id: str, policy: str, *, episodes: int, steps: int, seed: int) -> Iterator[tuple[str, Audit]]:
+    """Audit an environment under a kind of policy; yields nothing where it has none of that kind."""
+    from agents.cards import load_pretrained, names, read_card
+    from agents.policies import FullStrengthPolicy, baseline
+
+    if policy != "shipped":
+        chosen = FullStrengthPolicy() if policy == "full" else baseline(policy)
+        yield policy, _audit(env_id, chosen, episodes, steps, seed)
+        return
+    for name in names():
+        if read_card(name)["environment"] == env_id:
+            yield name, _audit(env_id, load_pretrained(name)[0], episodes, steps, seed)
+
+
+def _audit(env_id: str, policy: object, episodes: int, steps: int, seed: int) -> Audit:
+    env = gymnasium.make_vec(env_id, num_envs=episodes, autoreset_mode=AutoresetMode.DISABLED, n_threads=1)
+    batch = env.unwrapped
+    policy.reset([seed + i for i in range(episodes)])
+    observations, _ = env.reset(seed=seed)
+    # episodes that end go on: the physics does
+    ledger = batch.integrator = Ledger(batch.body.model, batch.state, batch.control)
+    for _ in range(steps):
+        observations = env.step(policy(observations, batch))[0]
+    env.close()
+    muscles = ledger.work["muscles"].mean()
+    work = {kind: float(work.mean() / muscles) for kind, work in ledger.work.items()}
+    return Audit(float(muscles), work, float(ledger.imbalance.mean() / muscles))
+
+
+def main() -> None:
+    """Run the command line."""
+    require_extra("train")
+    import tyro
+    from rich.console import Console
+    from rich.table import Table
+    from tqdm import tqdm
+
+    arguments = tyro.cli(Arguments)
+    for env_id in arguments.env:
+        choose("environment", env_id, IDS)
+    for policy in arguments.policies:
+        choose("policy", policy, POLICIES)
+    check_bounds(dataclasses.asdict(arguments), {"episodes": 1, "steps": 1, "seed": 0})
+    table = Table(title="Energy over the work of the muscles; what is positive comes from nothing")
+    pairs = [(env_id, policy) for env_id in arguments.env for policy in arguments.policies]
+    rows = []
+    for env_id, policy in tqdm(pairs, desc="audits"):
+        for name, result in audit(
+            env_id, policy, episodes=arguments.episodes, steps=arguments.steps, seed=arguments.seed
+        ):
+            rows.append((env_id.partition("/")[2], name, f"{result.muscles:.3g} J",
+                         *(f"{100.0 * gain:.2f} %" for gain in result.gains.values())))  # fmt: skip
+    for column in ("environment", "policy", "muscles", *result.gains):
+        table.add_column(column)
+    for row in rows:
+        table.add_row(*row)
+    Console(width=200).print(table)
+
+
+if __name__ == "__main__":
+    run_command(main)
