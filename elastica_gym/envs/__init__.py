@@ -4,6 +4,7 @@ from .batch import BatchEnv
 from .hackathon import Environment
 from .registration import GOAL_IDS, IDS, TASKS, register_all
 from .single import SingleEnv
-from .task import Situation, Task
+from .task import Situation, Task, TerminationReason
 
-__all__ = ["GOAL_IDS", "IDS", "TASKS", "BatchEnv", "Environment", "SingleEnv", "Situation", "Task", "register_all"]
+__all__ = ["GOAL_IDS", "IDS", "TASKS", "BatchEnv", "Environment", "SingleEnv", "Situation", "Task", "TerminationReason",
+           "register_all"]  # fmt: skip

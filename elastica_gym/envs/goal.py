@@ -47,8 +47,10 @@ v0: the first; withdrawn.
 from dataclasses import replace
 from typing import Any
 
+import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict
+from gymnasium.vector import VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
@@ -143,7 +145,8 @@ def _refuse_weights(arguments: dict[str, Any]) -> None:
                          f"as compute_reward tells it, not {arguments['weights']!r}")  # fmt: skip
 
 
-class GoalBatchEnv(BatchEnv):
+# libraries such as skrl tell an environment by its class's direct bases, of which Gymnasium's has to be one
+class GoalBatchEnv(BatchEnv, VectorEnv):
     """A batch of animals, each with a goal that can be changed afterwards.
 
     Made by ``gymnasium.make_vec("elastica_gym/<Name>ReachGoal-v1", num_envs=...)``. Observations are a dict of
@@ -178,7 +181,7 @@ class GoalBatchEnv(BatchEnv):
         return is_near(achieved_goal, desired_goal, TOLERANCE[self.body.name]).astype(np.float64)
 
 
-class GoalEnv(SingleEnv):
+class GoalEnv(SingleEnv, gymnasium.Env):
     """One animal with a goal that can be changed afterwards; what ``gymnasium.make`` returns."""
 
     def __init__(self, task: Task, **kwargs: Any) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +18,17 @@ GOAL_NAMES = ("goal/forward", "goal/right", "home/forward", "home/right")
 """What the octopus sees of its goals: a direction to go, and the way home"""
 GOAL_BOUNDS = ((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0))
 """Least and largest value of each"""
+
+
+class TerminationReason(IntEnum):
+    """Why an episode has ended, as ``termination_reason`` in the info; a task's own failures have the numbers after."""
+
+    RUNNING = 0
+    """It has not ended"""
+    TIME_LIMIT = 1
+    SUCCESS = 2
+    DIVERGED = 3
+    """The physics has failed"""
 
 
 class Situation(NamedTuple):
@@ -94,7 +106,7 @@ class Task:
     ends_on_success : bool
         Whether an episode ends with success.
     failures : dict of str to callable
-        By the name that ``termination_reason`` gives it, from a situation, whether the task has failed, which ends the
+        By its name among the ``termination_reasons``, from a situation, whether the task has failed, which ends the
         episode, (B,) bool.
     target : callable
         From goals, the target's position in the lab [m], (B, 3), or None where there is none to show.
@@ -121,6 +133,11 @@ class Task:
     failures: dict[str, Callable[[Situation], Mask]] = field(default_factory=dict)
     target: Callable[[Array], Array | None]
     scripted_policy: Callable[[Any], Array]
+
+    @property
+    def termination_reasons(self) -> tuple[str, ...]:
+        """Names of the reasons why an episode ends, by number: those of `TerminationReason`, then the failures."""
+        return (*(reason.name.lower() for reason in TerminationReason), *self.failures)
 
 
 def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:

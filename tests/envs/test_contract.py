@@ -1,5 +1,6 @@
 """What every registered environment keeps: a new one is tested for free."""
 
+import copy
 import itertools
 import multiprocessing
 import pickle
@@ -180,9 +181,9 @@ def test_state_of_an_environment_made_otherwise_is_refused(any_id, make_vec, cha
 def test_pickled_environment_goes_on_alike(any_id, make_vec):
     env = make_vec(any_id)
     roll(env, random_actions(9, 3, 2), 0)
-    copy = pickle.loads(pickle.dumps(env))
+    pickled = pickle.loads(pickle.dumps(env))
     for action in random_actions(10, 9, 2):
-        assert_same(env.step(action)[:4], copy.step(action)[:4])
+        assert_same(env.step(action)[:4], pickled.step(action)[:4])
 
 
 def _worker(env_id, queue):
@@ -202,6 +203,20 @@ def test_worker_processes_give_the_same(env_id, make_vec, method):
     assert_same(queue.get(timeout=120), here)
     process.join(timeout=30)
     assert process.exitcode == 0
+
+
+def test_other_libraries_tell_it_by_a_direct_base_of_gymnasiums(any_id, make_vec):
+    """As skrl does, which looks no further."""
+    for env in (make_vec(any_id), gymnasium.make(any_id).unwrapped):
+        assert any(base.__module__.startswith("gymnasium.") for base in type(env).__bases__)
+
+
+def test_a_deep_copy_goes_on_alike(any_id, make_vec):
+    env = make_vec(any_id)
+    roll(env, random_actions(9, 3, 2), 0)
+    copied = copy.deepcopy(env)
+    for action in random_actions(10, 9, 2):
+        assert_same(env.step(action)[:4], copied.step(action)[:4])
 
 
 def test_closing_twice_is_fine(any_id):

@@ -37,3 +37,13 @@ def test_reward_table_gives_the_weights(env_id, make_vec):
     section = _specification(env).split("Rewards\n")[1].split("Starting state\n")[0]
     rows = re.findall(r"^\| (\w+) \| (-?[\d.]+) \|", section, re.M)
     assert {name: float(weight) for name, weight in rows} == env.task.reward_weights
+
+
+def test_the_reasons_to_end_have_the_numbers_that_are_documented(env_id, make_vec):
+    env = make_vec(env_id)
+    text = " ".join(_specification(env).split()).split("``termination_reason``, a number: ")[1].split(".")[0]
+    documented = {name: int(number) for number, name in re.findall(r"(\d+) (\w+)", text)}
+    reasons = dict(zip(env.termination_reasons, range(len(env.termination_reasons)), strict=True))
+    if not env.task.ends_on_success:
+        reasons.pop("success")
+    assert documented == reasons
