@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium import logger
-from gymnasium.spaces import Box
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
@@ -19,7 +18,8 @@ from ..cosserat.kernels.compiler import Bound
 from ..cosserat.model import Array
 from ..cosserat.rod import require_positive, require_stable
 from ..cosserat.threads import Team, available_cpus
-from ..muscles import N_ACTIVATIONS
+from ..muscles import N_ACTIVATIONS, activation_names
+from .spaces import NamedBox
 from .task import Mask, Situation, Task, TerminationReason
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ CONTROL_DT = 0.05
 CLOCK_PERIOD = 1.0
 """Period of the clock that animals feel [s]"""
 RENDER_MODES = ("rgb_array",)
-"""Ways to draw, of which Gymnasium knows more"""
+"""Ways to draw; of one animal, Gymnasium's wrappers show or collect the pictures"""
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
                   "body_x", "body_v", "body_Q", "body_w", "body_contact", "body_touch", "rod_touch")  # fmt: skip
@@ -93,7 +93,8 @@ class BatchEnv(VectorEnv):
     ) -> None:  # fmt: skip
         _require_count("num_envs", num_envs, 4096)
         if render_mode not in (None, *RENDER_MODES):
-            raise ValueError(f"render_mode must be 'rgb_array' or None, not {render_mode!r}")
+            raise ValueError(f"render_mode must be 'rgb_array' or None, not {render_mode!r}: gymnasium.make takes "
+                             "'human' and 'rgb_array_list', for one animal")  # fmt: skip
         _require_size(render_size)
         self.task, self.num_envs, self.render_mode, self.render_size = task, num_envs, render_mode, render_size
         self._view: View | None = None
@@ -138,13 +139,13 @@ class BatchEnv(VectorEnv):
             self.max_episode_steps = min(self._n_steps, max_episode_steps)
 
     def _make_spaces(self) -> None:
-        layout = self.body.readings()
-        layout += [("clock/sine", -1.0, 1.0), ("clock/cosine", -1.0, 1.0), ("time_left", 0.0, 1.0)]
-        layout += [(name, *bounds) for name, bounds in zip(self.task.goal_names, self.task.goal_bounds, strict=True)]
+        layout = self.task.observations(self.body)
         self.observation_names = tuple(name for name, _, _ in layout)
         self._low, self._high = np.array([bounds for _, *bounds in layout], dtype=np.float32).T.copy()
-        self.single_observation_space = Box(self._low, self._high, dtype=np.float32)
-        self.single_action_space = Box(-1.0, 1.0, (N_ACTIVATIONS,), dtype=np.float32)
+        about: dict[str, Any] = {"mirror": self.body.mirror, "duration": self.duration}
+        most, muscles = np.ones(N_ACTIVATIONS, dtype=np.float32), activation_names(self.body.arms)
+        self.single_observation_space = NamedBox(self._low, self._high, names=self.observation_names, **about)
+        self.single_action_space = NamedBox(-most, most, names=muscles, **about)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
 
@@ -352,9 +353,12 @@ class BatchEnv(VectorEnv):
     def _observe(self, now: Situation, where: Mask) -> None:
         """Write what some environments observe beside what is felt; the others keep what they observed last."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
+        goal, wanted = self.task.see_goal(now), (self.num_envs, len(self.task.goal_names))
+        if goal.shape != wanted:
+            raise ValueError(f"see_goal of {self.task.name} must return {wanted}, as goal_names says, not {goal.shape}")
         columns = np.concatenate(
-            [np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None], self.task.see_goal(now)],
-            axis=1, dtype=np.float32)  # fmt: skip
+            [np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None], goal], axis=1, dtype=np.float32
+        )
         n = columns.shape[1]
         columns.clip(self._low[-n:], self._high[-n:], out=self._observations[:, -n:], where=where[:, None])
 

@@ -21,7 +21,8 @@ class SingleEnv(gymnasium.Env):
     ----------
     task : Task
     render_mode : str, optional
-        ``"rgb_array"``, with which `render` draws a picture.
+        ``"rgb_array"``, with which `render` draws a picture. ``gymnasium.make`` also takes ``"rgb_array_list"``, which
+        collects the pictures of an episode, and ``"human"``, which shows them in a window and needs pygame.
     **kwargs
         Arguments of `BatchEnv`.
 

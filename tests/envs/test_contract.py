@@ -12,6 +12,8 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
+from elastica_gym.envs import BatchEnv, task_of
+
 from .conftest import SHORT, flat, random_actions
 
 
@@ -267,7 +269,7 @@ def test_step_before_reset_says_so(any_id, make_vec):
         ({"n_threads": -1}, "n_threads must be a whole number from 1"),
         ({"autoreset_mode": "same_step"}, "autoreset_mode must be .* 'SameStep'"),
         ({"weights": {"speed": 1.0}}, "no term 'speed'"),
-        ({"weights": {"effort": float("nan")}}, "must be a finite number, not nan"),
+        ({"weights": {"diverged": float("nan")}}, "must be a finite number, not nan"),
         ({"body_kwargs": {"legs": 4}}, "body_kwargs: .* unexpected keyword argument 'legs'"),
         ({"spread": "nowhere"}, "spread must be one of .*, not 'nowhere'"),
         ({"render_mode": "human"}, "render_mode must be 'rgb_array' or None, not 'human'"),
@@ -276,11 +278,8 @@ def test_step_before_reset_says_so(any_id, make_vec):
     ],
 )
 def test_arguments_that_cannot_be_are_refused_at_construction(env_id, kwargs, message):
-    from elastica_gym.envs import TASKS, BatchEnv
-
-    task = TASKS[env_id.split("/")[1].removesuffix("-v1")]
     with pytest.raises(ValueError, match=message):
-        BatchEnv(task, **kwargs)
+        BatchEnv(task_of(env_id), **kwargs)
 
 
 def test_four_thousand_animals_at_once(env_id, make_vec):

@@ -5,8 +5,14 @@ import re
 
 import numpy as np
 
+from elastica_gym.envs import document
+from elastica_gym.envs.registration import SHIPPED, task_of
+
 
 def _specification(env):
+    """The docstring of a task's module, or of one from elsewhere what is written from its declaration."""
+    if task_of(env.spec.id) not in SHIPPED.values():
+        return document(env.task)
     return importlib.import_module(type(env).__module__.rsplit(".", 1)[0] + "." + _module(env)).__doc__
 
 
@@ -30,6 +36,17 @@ def test_observation_table_covers_every_index_with_its_range(env_id, make_vec):
         np.testing.assert_array_equal(space.high[first : last + 1], high)
         expected = last + 1
     assert expected == space.shape[0]
+
+
+def test_what_is_written_from_a_declaration_covers_it_too(any_id):
+    task, expected = task_of(any_id), 0
+    names = [name for name, *_ in task.observations(task.make_body())]
+    for first, last, _, _ in _index_rows(document(task)):
+        assert first == expected
+        # a row is of one kind, as the numbers that it counts
+        assert len({name.split("/")[0] for name in names[first : last + 1]}) == 1
+        expected = last + 1
+    assert expected == len(names)
 
 
 def test_reward_table_gives_the_weights(env_id, make_vec):
