@@ -1,6 +1,7 @@
 """Bad input: what a user may get wrong, told in one line that says how to mend it."""
 
 import difflib
+import importlib
 import importlib.metadata
 import math
 import os
@@ -72,11 +73,38 @@ def require_extra(extra: str) -> None:
         raise BadInputError(message)
 
 
+def choose_environment(env_id: str, *, goals: bool = False) -> str:
+    """Return `env_id` if it is registered with this package's environments, otherwise raise ``BadInputError``.
+
+    Parameters
+    ----------
+    env_id
+        Before it may stand ``my_module:``, a module that is imported first, as Gymnasium does.
+    goals
+        Whether it may be one whose observation is a dict with the goal.
+    """
+    from elastica_gym.envs import GoalTask, registered_ids, task_of
+
+    module, _, name = env_id.rpartition(":")
+    if module:
+        try:
+            importlib.import_module(module)
+        except ImportError as error:
+            raise BadInputError(f"Cannot import the module {module!r} of {env_id!r}: {error}") from error
+    if not goals and name in registered_ids() and isinstance(task_of(name), GoalTask):
+        raise BadInputError(
+            f"{name} has observations that are a dict with the goal, which this command does not take: train on it by "
+            "hindsight experience replay, as the docstring of elastica_gym.envs.goal shows"
+        )
+    choose("environment", name, registered_ids() if goals else environment_ids())
+    return env_id
+
+
 def environment_ids() -> list[str]:
     """Return the ids that agents are trained on here: those whose observation is one vector."""
-    from elastica_gym.envs import IDS
+    from elastica_gym.envs import GoalTask, registered_ids, task_of
 
-    return list(IDS)
+    return [env_id for env_id in registered_ids() if not isinstance(task_of(env_id), GoalTask)]
 
 
 def make_folder(folder: Path) -> Path:

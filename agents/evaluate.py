@@ -13,6 +13,7 @@ from agents.checks import (
     BadInputError,
     check_bounds,
     choose,
+    choose_environment,
     environment_ids,
     make_folder,
     missing_extra,
@@ -192,9 +193,11 @@ class EvaluateArguments:
     pretrained: str | None = None
     """Instead of a run: the name of a policy in agents/pretrained."""
     policy: str | None = None
-    """Instead of a run: zero, random, scripted, seed_gait, or the gait.yml that agents.search wrote."""
+    """Instead of a run: zero, random, scripted, seed_gait, the gait.yml that agents.search wrote, or a Python file with
+    a function policy(observation), as scripts/score.py takes it."""
     env: str | None = None
-    """Environment id; by default the one that the policy was trained or searched on."""
+    """Environment id, before which may stand the module that registers it, as in my_module:my_lab/SnakeTurn-v0; by
+    default the one that the policy was trained or searched on."""
     spread: str | None = None
     """How starts are drawn, for tasks that know several: of OctopusReach arc, anywhere or default."""
     episodes: int = 50
@@ -242,7 +245,10 @@ def _policy_and_environment(arguments: EvaluateArguments) -> "tuple[Policy, str,
     if sum(given is not None for given in (arguments.run, arguments.pretrained, arguments.policy)) != 1:
         raise BadInputError("Give either --run DIR, --pretrained NAME or --policy zero|random|scripted|seed_gait|FILE.")
     if arguments.env is not None:
-        choose("environment", arguments.env, environment_ids())
+        from agents.policies import BASELINES
+
+        # a policy that does not look at observations takes them in any form
+        choose_environment(arguments.env, goals=arguments.policy in BASELINES)
     # torch takes seconds to import: not before the arguments are known to be good
     from agents.cards import load_pretrained
     from agents.policies import load_run
@@ -257,28 +263,40 @@ def _policy_and_environment(arguments: EvaluateArguments) -> "tuple[Policy, str,
         assert arguments.run is not None
         policy, config = load_run(arguments.run)
         env_id, env_kwargs = config["env"], config["hyperparameters"].get("env_kwargs") or {}
-    return policy, arguments.env or choose("environment", env_id, environment_ids()), env_kwargs
+    return policy, arguments.env or choose_environment(env_id), env_kwargs
 
 
 def _baseline_and_environment(name: str, env_id: str | None) -> "tuple[Policy, str]":
     from agents.gaits import load_gait
     from agents.policies import baseline
+    from elastica_gym.envs import task_of
 
     if Path(name).suffix == ".yml":
         gait, searched_on = load_gait(Path(name))
-        return gait, env_id or choose("environment", searched_on, environment_ids())
+        return gait, env_id or choose_environment(searched_on)
     if env_id is None:
         raise BadInputError(f"--policy needs --env, one of {', '.join(environment_ids())}.")
-    if name == "seed_gait" and "Snake" not in env_id:
+    if Path(name).suffix == ".py":
+        return _file_policy(Path(name)), env_id
+    if name == "seed_gait" and task_of(env_id).make_body().name != "snake":
         raise BadInputError(f"seed_gait is the snake's published gait; {env_id} is not a snake's.")
     return baseline(name), env_id
 
 
+def _file_policy(path: Path) -> "Policy":
+    """Return the policy of a Python file, as the score takes it, in this process."""
+    from agents.policy_file import FilePolicy
+
+    if not path.is_file():
+        raise BadInputError(f"There is no policy file {path}.")
+    return FilePolicy(path)
+
+
 def spreads(env_id: str) -> tuple[str, ...]:
     """Return the ways in which an environment can draw its starts."""
-    from elastica_gym.envs import TASKS
+    from elastica_gym.envs import task_of
 
-    return tuple(TASKS[env_id.rpartition("/")[2].removesuffix("-v1")].starts)
+    return tuple(task_of(env_id).starts)
 
 
 def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs: dict[str, Any]) -> Path | None:

@@ -57,7 +57,9 @@ def load(algo: str, env_id: str, *, config: Path | None = None, overrides: dict[
         raise BadInputError(f"Cannot read the configuration {path}: {error.strerror}") from error
     except yaml.YAMLError as error:
         raise BadInputError(f"The configuration {path} is not YAML: {error}") from error
-    entry = entries.get(env_id, entries.get("default")) if isinstance(entries, dict) else None
+    # an id may have the module before it that registers it
+    name = env_id.rpartition(":")[2]
+    entry = entries.get(name, entries.get("default")) if isinstance(entries, dict) else None
     if not isinstance(entry, dict):
         raise BadInputError(f"The configuration {path} has no entry {env_id!r} and none called 'default'.")
     values = {**entry, **(overrides or {})}

@@ -7,7 +7,7 @@ from typing import Any, Self
 import numpy as np
 from tqdm import tqdm
 
-from agents.checks import BadInputError, check_bounds, choose, environment_ids, missing_extra
+from agents.checks import BadInputError, check_bounds, choose_environment, missing_extra
 from agents.policy_process import PolicyError, PolicyProcess
 from agents.scoring import GENERAL, GOALS, POINTS, Mask, goals_held, score
 from agents.seeds import target_seeds
@@ -93,11 +93,10 @@ def print_score(result: dict[str, Any]) -> None:
 
 
 def _check(env_id: str, targets: int, target_seed: int, n_threads: int, record: Path | None) -> None:
-    from elastica_gym.envs import TASKS
+    from elastica_gym.envs import task_of
 
-    choose("environment", env_id, environment_ids())
-    task = TASKS.get(env_id.rpartition("/")[2].removesuffix("-v1"))
-    if task is None or not set(KINDS) <= set(task.starts):
+    choose_environment(env_id)
+    if not set(KINDS) <= set(task_of(env_id).starts):
         raise BadInputError(f"{env_id} has no object to fetch from {', '.join(KINDS)} targets.")
     if not 1 <= targets <= MOST_TARGETS:
         raise BadInputError(f"targets must be from 1 to {MOST_TARGETS}, got {targets}")

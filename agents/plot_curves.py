@@ -3,7 +3,7 @@
 import dataclasses
 from pathlib import Path
 
-from agents.checks import BadInputError, choose, environment_ids, make_folder, require_extra, run_command
+from agents.checks import BadInputError, choose_environment, make_folder, require_extra, run_command
 
 
 @dataclasses.dataclass
@@ -24,7 +24,7 @@ def main() -> None:
     import tyro
 
     arguments = tyro.cli(PlotArguments)
-    choose("environment", arguments.env, environment_ids())
+    choose_environment(arguments.env)
     from agents import curves
     from agents.checkpoints import write_atomically
     from agents.policies import read_config

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from agents.checks import BadInputError
+
 
 class FilePolicy:
     """A Python file with a function ``policy(observation)``, from an observation (d,) to an action (42,).
@@ -43,7 +45,7 @@ class FilePolicy:
         sys.modules[spec.name] = module
         spec.loader.exec_module(module)
         if not callable(getattr(module, "policy", None)):
-            raise TypeError(f"{self._path} has no function policy(observation)")
+            raise BadInputError(f"{self._path} has no function policy(observation)")
         if hasattr(module, "reset"):
             module.reset()
         return module.policy

@@ -2,12 +2,13 @@
 
 from typing import Any
 
-import gymnasium
 import torch
 from gymnasium import spaces
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import Tensor
+
+from agents.symmetry import named
 
 MOST = 10.0
 """Deviations from the mean to which what is seen is clipped"""
@@ -60,18 +61,16 @@ class RhythmicPolicy(ActorCriticPolicy):
 
     Parameters
     ----------
-    env_id : str
-        Id of the environment, whose episodes are as long as they are by default.
     periods : sequence of float
-        Of the clocks [s].
+        Of the clocks [s]; by default there are none.
     """
 
-    def __init__(self, *args: Any, env_id: str, periods: tuple[float, ...], **kwargs: Any):
-        envs: Any = gymnasium.make_vec(env_id, num_envs=1).unwrapped
-        told = {
-            "time_left": envs.observation_names.index("time_left"),
-            "duration": envs.max_episode_steps * envs.control_dt,
-            "periods": periods,
-        }
+    def __init__(self, observation_space: spaces.Space, *args: Any, periods: tuple[float, ...] = (), **kwargs: Any):
+        space = named(self, observation_space)
+        told = {"time_left": space.names.index("time_left"), "duration": space.duration, "periods": periods}
         kwargs |= {"features_extractor_class": Rhythms, "features_extractor_kwargs": told}
-        super().__init__(*args, **kwargs)
+        super().__init__(observation_space, *args, **kwargs)
+        self.periods = periods
+
+    def _get_constructor_parameters(self) -> dict[str, Any]:
+        return {**super()._get_constructor_parameters(), "periods": self.periods}

@@ -8,8 +8,7 @@ from typing import Any, Literal
 from agents.checks import (
     BadInputError,
     check_bounds,
-    choose,
-    environment_ids,
+    choose_environment,
     fail,
     make_folder,
     require_extra,
@@ -86,7 +85,7 @@ def main() -> None:
 
 def _started(arguments: SearchArguments) -> tuple[Path, dict[str, Any]]:
     """Check the arguments and make the folder; return that and what goes into its search.yml."""
-    choose("environment", arguments.env, environment_ids())
+    choose_environment(arguments.env)
     config = {key: value for key, value in dataclasses.asdict(arguments).items() if key not in ("out", "folder")}
     if arguments.evaluations is arguments.minutes is None:
         config["evaluations"] = DEFAULT_EVALUATIONS

@@ -2,15 +2,27 @@
 
 from typing import Any
 
-import gymnasium
 import torch
 from gymnasium import spaces
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import Tensor, nn
 
-from elastica_gym.bodies.mirror import Mirror
-from elastica_gym.muscles import activation_names
+from elastica_gym.envs.spaces import NamedBox
+
+
+def named(policy: Any, space: spaces.Space) -> NamedBox:
+    """Return the space of an environment, which a policy needs to know what its numbers are.
+
+    Raises
+    ------
+    ValueError
+        If it is another, as that of a wrapper which changes observations or actions.
+    """
+    if not isinstance(space, NamedBox):
+        raise ValueError(f"{type(policy).__name__} needs the spaces of an elastica_gym environment, not {space}: "
+                         "it does not work through wrappers that change observations or actions")  # fmt: skip
+    return space
 
 
 class _Image(nn.Module):
@@ -19,9 +31,9 @@ class _Image(nn.Module):
     index: Tensor
     sign: Tensor
 
-    def __init__(self, mirror: Mirror, names: tuple[str, ...]):
+    def __init__(self, space: NamedBox):
         super().__init__()
-        index, sign = mirror.image(names)
+        index, sign = space.mirror.image(space.names)
         self.register_buffer("index", torch.as_tensor(index), persistent=False)
         self.register_buffer("sign", torch.as_tensor(sign, dtype=torch.float32), persistent=False)
 
@@ -57,19 +69,13 @@ class SymmetricPolicy(ActorCriticPolicy):
 
     With networks f and v and the mirror M, its mean action is (f(o) + M f(M o)) / 2 and its value (v(o) + v(M o)) / 2:
     the symmetrised layers of van der Pol et al. 2020, "MDP homomorphic networks", for the group of one reflection.
-
-    Parameters
-    ----------
-    env_id : str
-        Id of the environment, which knows what its observations are and where its animal's mirror is.
+    What its numbers are, and where the mirror is, it takes from the spaces of the environment.
     """
 
-    def __init__(self, *args: Any, env_id: str, **kwargs: Any):
-        envs: Any = gymnasium.make_vec(env_id, num_envs=1).unwrapped
-        seen = _Image(envs.body.mirror, envs.observation_names)
-        done = _Image(envs.body.mirror, activation_names(envs.body.arms))
+    def __init__(self, observation_space: spaces.Space, action_space: spaces.Space, *args: Any, **kwargs: Any):
+        seen, done = (_Image(named(self, space)) for space in (observation_space, action_space))
         kwargs |= {"features_extractor_class": _BothImages, "features_extractor_kwargs": {"image": seen}}
-        super().__init__(*args, **kwargs)
+        super().__init__(observation_space, action_space, *args, **kwargs)
         # the optimiser has the layers' weights already, and they stay the same
         self.action_net = _MeanOfImages(self.action_net, done)
         self.value_net = _MeanOfImages(self.value_net, nn.Identity())  # type: ignore[assignment]

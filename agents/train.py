@@ -10,8 +10,7 @@ from typing import Any
 from agents.checks import (
     BadInputError,
     check_bounds,
-    choose,
-    environment_ids,
+    choose_environment,
     fail,
     make_folder,
     require_extra,
@@ -31,7 +30,7 @@ class TrainArguments:
     """
 
     env: str = "elastica_gym/SnakeForward-v1"
-    """Environment id."""
+    """Environment id, before which may stand the module that registers it, as in my_module:my_lab/SnakeTurn-v0."""
     algo: str = "ppo"
     """Algorithm: ppo or sac."""
     seed: int = 0
@@ -116,7 +115,7 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     """Check the arguments of a new run and make its folder; return that and what goes into its config.yml."""
     from agents import hyperparameters
 
-    choose("environment", arguments.env, environment_ids())
+    choose_environment(arguments.env)
     overrides = hyperparameters.parse_overrides(arguments.set)
     if arguments.n_envs is not None:
         overrides["n_envs"] = arguments.n_envs
@@ -164,7 +163,7 @@ def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
 
 
 def _check(config: dict[str, Any]) -> None:
-    choose("environment", config["env"], environment_ids())
+    choose_environment(config["env"])
     lowest = {"steps": 0 if config.get("imitate") else 1, "minutes": 0.001, "imitate": 0, "threads": 1,
               "evaluations": 0, "evaluation_episodes": 1, "recordings": 0, "checkpoint_minutes": 0.0}  # fmt: skip
     check_bounds(config, lowest)

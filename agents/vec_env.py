@@ -35,8 +35,9 @@ class BatchVecEnv(VecEnv):
     -----
     The dictionaries of environments in mid-episode are one and the same object: treat them as read-only. That of an
     environment whose episode ended is its own, with ``terminal_observation``, ``TimeLimit.truncated``, ``is_success``,
-    ``termination_reason``, ``distance`` and ``episode``: return ``r``, length ``l``, seconds ``t`` since this object
-    was made, ``distance``, and ``reward_<term>``, the sum of each term over the episode.
+    ``termination_reason`` (the name of the number that the batch gives), ``distance`` and ``episode``: return ``r``,
+    length ``l``, seconds ``t`` since this object was made, ``distance``, and ``reward_<term>``, the sum of each term
+    over the episode.
     """
 
     def __init__(self, batch: Any):
@@ -113,6 +114,7 @@ class BatchVecEnv(VecEnv):
 
     def _episode_info(self, i: int, timed_out: bool, infos: dict[str, Any]) -> dict[str, Any]:
         last = {key: infos["final_info"][key][i] for key in ("is_success", "termination_reason", "distance")}
+        last["termination_reason"] = self.batch.termination_reasons[last["termination_reason"]]
         episode = {key: float(total[i]) for key, total in self._sums.items()}
         episode |= {"l": int(self._lengths[i]), "t": round(time.time() - self._started, 6)}
         episode["distance"] = float(last["distance"])

@@ -6,11 +6,12 @@
     env = gymnasium.make("elastica_gym/SnakeForward-v1")
     envs = gymnasium.make_vec("elastica_gym/SnakeForward-v1", num_envs=64)
 
-With ``render_mode="rgb_array"``, ``env.render()`` draws pictures.
+With ``render_mode="rgb_array"``, ``env.render()`` draws pictures. `register` adds tasks of your own.
 """
 
-from .envs import register_all
+from .envs import register, register_all
 
+__all__ = ["register", "register_all"]
 __version__ = "0.1.0"
 
 register_all()

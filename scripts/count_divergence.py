@@ -7,7 +7,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from agents.checks import BadInputError, check_bounds, choose, require_extra, run_command
-from elastica_gym.envs import GOAL_IDS, IDS
+from elastica_gym.envs import GOAL_IDS, IDS, TerminationReason
 
 
 @dataclasses.dataclass
@@ -41,7 +41,7 @@ def count(env_id: str, arguments: Arguments) -> tuple[int, int, float]:
     for _ in tqdm(range(rounds), desc=env_id):
         info = env.step(rng.uniform(-1.0, 1.0, env.action_space.shape))[4]
         if "final_info" in info:
-            diverged += int(np.sum(info["final_info"]["termination_reason"] == "diverged"))
+            diverged += int(np.sum(info["final_info"]["termination_reason"] == TerminationReason.DIVERGED))
     env.close()
     return diverged, rounds * n, env.unwrapped.sim_dt  # type: ignore[attr-defined]
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium import logger
-from gymnasium.spaces import Box
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
@@ -19,8 +18,9 @@ from ..cosserat.kernels.compiler import Bound
 from ..cosserat.model import Array
 from ..cosserat.rod import require_positive, require_stable
 from ..cosserat.threads import Team, available_cpus
-from ..muscles import N_ACTIVATIONS
-from .task import Mask, Situation, Task
+from ..muscles import N_ACTIVATIONS, activation_names
+from .spaces import NamedBox
+from .task import Mask, Situation, Task, TerminationReason
 
 if TYPE_CHECKING:
     from ..viz import View
@@ -31,7 +31,7 @@ CONTROL_DT = 0.05
 CLOCK_PERIOD = 1.0
 """Period of the clock that animals feel [s]"""
 RENDER_MODES = ("rgb_array",)
-"""Ways to draw, of which Gymnasium knows more"""
+"""Ways to draw; of one animal, Gymnasium's wrappers show or collect the pictures"""
 
 PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
                   "body_x", "body_v", "body_Q", "body_w", "body_contact", "body_touch", "rod_touch")  # fmt: skip
@@ -57,7 +57,11 @@ class BatchEnv(VectorEnv):
         Largest time step of the physics [s]; a control step takes as few equal ones as fit. By
         default the body's, which holds the bound on divergence.
     duration : float, optional
-        Simulated time of an episode [s], to the nearest control step; by default the task's.
+        Simulated time of an episode [s], to the nearest control step; by default the task's. The observed part of the
+        episode that is left refers to it.
+    max_episode_steps : int, optional
+        Control steps after which an episode is truncated, if ``duration`` does not end it earlier: as with
+        ``gymnasium.make``, it changes nothing that is observed. None and -1 leave it to ``duration``.
     n_threads : int, optional
         Threads that share the environments; by default as many as there are CPUs to run on. Results
         do not depend on it.
@@ -82,14 +86,15 @@ class BatchEnv(VectorEnv):
 
     def __init__(
         self, task: Task, num_envs: int = 1, *, control_dt: float = CONTROL_DT, sim_dt: float | None = None,
-        duration: float | None = None, n_threads: int | None = None,
+        duration: float | None = None, max_episode_steps: int | None = None, n_threads: int | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP, weights: dict[str, float] | None = None,
         spread: str | None = None, body_kwargs: dict[str, Any] | None = None, render_mode: str | None = None,
         render_size: tuple[int, int] = (640, 360),
     ) -> None:  # fmt: skip
         _require_count("num_envs", num_envs, 4096)
         if render_mode not in (None, *RENDER_MODES):
-            raise ValueError(f"render_mode must be 'rgb_array' or None, not {render_mode!r}")
+            raise ValueError(f"render_mode must be 'rgb_array' or None, not {render_mode!r}: gymnasium.make takes "
+                             "'human' and 'rgb_array_list', for one animal")  # fmt: skip
         _require_size(render_size)
         self.task, self.num_envs, self.render_mode, self.render_size = task, num_envs, render_mode, render_size
         self._view: View | None = None
@@ -106,14 +111,14 @@ class BatchEnv(VectorEnv):
         _require_count("n_threads", self.n_threads, 4096)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         self._set_times(control_dt, self.body.sim_dt if sim_dt is None else sim_dt,
-                        task.duration if duration is None else duration)  # fmt: skip
+                        task.duration if duration is None else duration, max_episode_steps)  # fmt: skip
         frames_per_second = round(1.0 / control_dt)
         self.metadata = {"render_modes": list(RENDER_MODES), "render_fps": frames_per_second,
                          "autoreset_mode": self.autoreset_mode}  # fmt: skip
         self._make_spaces()
         self._allocate()
 
-    def _set_times(self, control_dt: float, sim_dt: float, duration: float) -> None:
+    def _set_times(self, control_dt: float, sim_dt: float, duration: float, max_episode_steps: int | None) -> None:
         require_positive("control_dt", control_dt)
         require_positive("sim_dt", sim_dt)
         require_positive("duration", duration)
@@ -125,16 +130,22 @@ class BatchEnv(VectorEnv):
         # a hair less, so that rounding in the quotient costs no extra step
         self.n_substeps = max(1, int(np.ceil(control_dt / sim_dt - 1e-9)))
         self.sim_dt = control_dt / self.n_substeps
-        self.max_episode_steps = max(1, round(duration / control_dt))
+        self._n_steps = max(1, round(duration / control_dt))
+        self.duration = self._n_steps * control_dt
+        self.max_episode_steps = self._n_steps
+        # -1 is Gymnasium's word for no limit
+        if max_episode_steps not in (None, -1):
+            _require_count("max_episode_steps", max_episode_steps, 2**31 - 1)
+            self.max_episode_steps = min(self._n_steps, max_episode_steps)
 
     def _make_spaces(self) -> None:
-        layout = self.body.readings()
-        layout += [("clock/sine", -1.0, 1.0), ("clock/cosine", -1.0, 1.0), ("time_left", 0.0, 1.0)]
-        layout += [(name, *bounds) for name, bounds in zip(self.task.goal_names, self.task.goal_bounds, strict=True)]
+        layout = self.task.observations(self.body)
         self.observation_names = tuple(name for name, _, _ in layout)
         self._low, self._high = np.array([bounds for _, *bounds in layout], dtype=np.float32).T.copy()
-        self.single_observation_space = Box(self._low, self._high, dtype=np.float32)
-        self.single_action_space = Box(-1.0, 1.0, (N_ACTIVATIONS,), dtype=np.float32)
+        about: dict[str, Any] = {"mirror": self.body.mirror, "duration": self.duration}
+        most, muscles = np.ones(N_ACTIVATIONS, dtype=np.float32), activation_names(self.body.arms)
+        self.single_observation_space = NamedBox(self._low, self._high, names=self.observation_names, **about)
+        self.single_action_space = NamedBox(-most, most, names=muscles, **about)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
 
@@ -175,7 +186,7 @@ class BatchEnv(VectorEnv):
         Returns
         -------
         tuple
-            Observations (B, d) and an empty info.
+            Observations (B, d) and an info with the keys of `step`, of the episodes that begin.
 
         Raises
         ------
@@ -188,7 +199,8 @@ class BatchEnv(VectorEnv):
                              f"{np.flatnonzero(~mask).tolist()}")  # fmt: skip
         self._seed(seed, mask)
         self._start(mask)
-        return self._observations.copy(), {}
+        info = self._first_info()
+        return self._observations.copy(), {**info, **{f"_{name}": mask.copy() for name in info}}
 
     def step(self, actions: Array) -> tuple[Observations, Array, Mask, Mask, dict[str, Any]]:
         """Advance every environment by one control step.
@@ -204,7 +216,9 @@ class BatchEnv(VectorEnv):
         Returns
         -------
         tuple
-            Observations (B, d), rewards (B,), terminated (B,), truncated (B,) and info: arrays over the batch.
+            Observations (B, d), rewards (B,), terminated (B,), truncated (B,) and info, arrays over the batch:
+            ``reward_<term>``, ``distance``, ``is_success`` and ``termination_reason``, a `TerminationReason` or the
+            place of a failure of the task in ``termination_reasons``.
 
         Raises
         ------
@@ -223,16 +237,18 @@ class BatchEnv(VectorEnv):
         ends |= {"success": info["is_success"] & self.task.ends_on_success, "diverged": ~sound}
         terminated = functools.reduce(np.logical_or, ends.values())
         truncated = ~terminated & (self.elapsed >= self.max_episode_steps)
-        info["termination_reason"] = _reasons({"time_limit": truncated, **ends})
+        info["termination_reason"] = self._reasons({"time_limit": truncated, **ends})
         self._observe(now, sound)
         if begin.any():
             self._start(begin)
-            self._blank(begin, rewards, terminated, truncated, info)
+            for values in (rewards, terminated, truncated):
+                values[begin] = 0
+            self._begin_info(begin, info)
         self._ended = terminated | truncated
         if self.autoreset_mode == AutoresetMode.SAME_STEP and self._ended.any():
             info = self._restart(self._ended.copy(), info)
         else:
-            info |= dict.fromkeys([f"_{name}" for name in info], ~begin)
+            info |= {f"_{name}": np.ones(self.num_envs, dtype=bool) for name in info}
         return self._observations.copy(), rewards, terminated, truncated, info
 
     def render(self) -> "tuple[Image, ...] | None":
@@ -309,7 +325,7 @@ class BatchEnv(VectorEnv):
 
     def situation(self) -> Situation:
         """Return where the batch stands."""
-        left = np.maximum(1.0 - self.elapsed / self.max_episode_steps, 0.0)
+        left = np.maximum(1.0 - self.elapsed / self._n_steps, 0.0)
         return Situation(self.pose, self._before, self.goal, self.progress, self._progress_before, self.activations,
                          left, self.control_dt, self.body)  # fmt: skip
 
@@ -327,12 +343,22 @@ class BatchEnv(VectorEnv):
         info["is_success"] = sound & self.task.succeeds(now)
         return rewards, info
 
+    def _reasons(self, ends: dict[str, Mask]) -> NDArray[np.int64]:
+        """Return the place of each reason to end in ``termination_reasons``, (B,); of several reasons the last."""
+        reasons = np.full(self.num_envs, TerminationReason.RUNNING, dtype=np.int64)
+        for name, ended in ends.items():
+            reasons[ended] = self.termination_reasons.index(name)
+        return reasons
+
     def _observe(self, now: Situation, where: Mask) -> None:
         """Write what some environments observe beside what is felt; the others keep what they observed last."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
+        goal, wanted = self.task.see_goal(now), (self.num_envs, len(self.task.goal_names))
+        if goal.shape != wanted:
+            raise ValueError(f"see_goal of {self.task.name} must return {wanted}, as goal_names says, not {goal.shape}")
         columns = np.concatenate(
-            [np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None], self.task.see_goal(now)],
-            axis=1, dtype=np.float32)  # fmt: skip
+            [np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None], goal], axis=1, dtype=np.float32
+        )
         n = columns.shape[1]
         columns.clip(self._low[-n:], self._high[-n:], out=self._observations[:, -n:], where=where[:, None])
 
@@ -379,18 +405,29 @@ class BatchEnv(VectorEnv):
         self._distance[begun] = self.task.distance(now)[begun]
         self._observe(now, mask)
 
-    def _blank(self, begun: Mask, rewards: Array, terminated: Mask, truncated: Mask, info: dict[str, Any]) -> None:
-        """Clear what a step that only began an episode returns (autoreset NEXT_STEP)."""
-        for values in (rewards, terminated, truncated, *info.values()):
-            values[begun] = "" if values.dtype == object else 0
+    def _first_info(self) -> dict[str, Any]:
+        """Return the info of episodes that have just begun: the keys of every step, and nothing earned yet."""
+        n = self.num_envs
+        return {
+            **{f"reward_{name}": np.zeros(n) for name in self.weights},
+            "distance": self._distance.copy(),
+            "is_success": np.zeros(n, dtype=bool),
+            "termination_reason": np.full(n, TerminationReason.RUNNING, dtype=np.int64),
+        }
+
+    def _begin_info(self, begun: Mask, info: dict[str, Any]) -> None:
+        """Write the info of episodes that have just begun over that of the environments' last step."""
+        for name, first in self._first_info().items():
+            info[name][begun] = first[begun]
 
     def _restart(self, ended: Mask, info: dict[str, Any]) -> dict[str, Any]:
         """Begin new episodes where old ones ended, which keep their last observation in the info (SAME_STEP)."""
         aside = {name: value.copy() for name, value in info.items()}
         final = {"final_obs": self._observations.copy(), "final_info": aside | {f"_{name}": ended for name in aside}}
         self._start(ended)
-        # as in Gymnasium's own batches, the info of a new episode's first observation is empty
-        return {**info, **{f"_{name}": ~ended for name in info}, **final, **{f"_{name}": ended for name in final}}
+        self._begin_info(ended, info)
+        masks = {f"_{name}": np.ones(self.num_envs, dtype=bool) for name in info}
+        return {**info, **masks, **final, **{f"_{name}": ended for name in final}}
 
     # checkpoints
 
@@ -407,7 +444,7 @@ class BatchEnv(VectorEnv):
         })  # fmt: skip
 
     def _made_as(self) -> dict[str, Any]:
-        names = ("spread", "num_envs", "control_dt", "sim_dt", "max_episode_steps")
+        names = ("spread", "num_envs", "control_dt", "sim_dt", "duration", "max_episode_steps")
         elements = self.body.model.n_elements.tolist()
         return {"task": self.task.name, "n_elements": elements, **{name: getattr(self, name) for name in names}}
 
@@ -420,8 +457,8 @@ class BatchEnv(VectorEnv):
             If it was taken from an environment that was made otherwise: with another task, size, body or time step.
         """
         for name, mine in self._made_as().items():
-            if saved["made_as"][name] != mine:
-                raise ValueError(f"the state was taken where {name} is {saved['made_as'][name]}; here it is {mine}")
+            if (other := saved["made_as"].get(name)) != mine:
+                raise ValueError(f"the state was taken where {name} is {other}; here it is {mine}")
         for array, value in zip(self.control, saved["control"], strict=True):
             array[...] = value
         for name, value in saved["physics"].items():
@@ -438,6 +475,11 @@ class BatchEnv(VectorEnv):
                 generator.bit_generator.state = state
 
     # for those who look on
+
+    @property
+    def termination_reasons(self) -> tuple[str, ...]:
+        """Names of the reasons by the number that ``termination_reason`` has in the info; see `Task`."""
+        return self.task.termination_reasons
 
     @property  # type: ignore[misc]
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
@@ -502,11 +544,3 @@ def _checked_seeds(seeds: Sequence[int | None], num_envs: int) -> list[int | Non
     if len(listed) != num_envs or not all(each is None or isinstance(each, (int, np.integer)) for each in listed):
         raise ValueError(f"seed must be a whole number or {num_envs} of them, any of which may be None, not {seeds!r}")
     return [None if each is None else int(each) for each in listed]
-
-
-def _reasons(ends: dict[str, Mask]) -> NDArray[np.object_]:
-    """Return why each episode ends, or an empty text; of several reasons the last."""
-    reasons = np.full(ends["diverged"].shape, "", dtype=object)
-    for name, ended in ends.items():
-        reasons[ended] = name
-    return reasons

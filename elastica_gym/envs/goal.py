@@ -38,17 +38,36 @@ Arguments
 Those of `elastica_gym.envs.BatchEnv`, but for ``weights``, of which ``compute_reward`` would know nothing; ``spread``
 as there.
 
+Training
+--------
+The observations are for Stable-Baselines3's ``MultiInputPolicy`` and its replay buffer with hindsight, through the
+adapter of this package::
+
+    from stable_baselines3 import SAC, HerReplayBuffer
+    from agents.vec_env import make_batch_vec_env
+
+    envs = make_batch_vec_env("elastica_gym/SnakeReachGoal-v1", n_envs=16)
+    model = SAC("MultiInputPolicy", envs, replay_buffer_class=HerReplayBuffer, learning_starts=6400, train_freq=4)
+    model.learn(300_000)
+
+``python -m agents.train`` takes the flat ids only; ``python -m agents.evaluate`` these too, for policies that do not
+look at observations. Neither has been trained to success here.
+
 Version history
 ---------------
 v1: firm ground for the snake; contact of the octopus that conserves energy.
 v0: the first; withdrawn.
 """
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any
 
+import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict
+from gymnasium.vector import VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
@@ -59,8 +78,19 @@ from .single import SingleEnv
 from .task import Mask, Situation, Task
 
 Parts = dict[str, NDArray[np.float32]]
-TOLERANCE = {"snake": 0.05, "octopus": 0.225}
-"""By body, distance of the head from the goal that is near enough, in body lengths"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GoalTask(Task):
+    """A task that makes environments whose goals can be changed afterwards; see `goal_conditioned`.
+
+    Attributes
+    ----------
+    tolerance : float
+        Distance of the head from the goal that is near enough, in body lengths.
+    """
+
+    tolerance: float
 
 
 def draw_snakes_goal(rng: np.random.Generator, situation: Situation) -> Array:
@@ -86,15 +116,15 @@ def is_near(achieved: ArrayLike, desired: ArrayLike, tolerance: float) -> Mask:
     return way[..., 0] * way[..., 0] + way[..., 1] * way[..., 1] <= np.float32(tolerance * tolerance)
 
 
-def succeeds(situation: Situation) -> Mask:
+def succeeds(situation: Situation, tolerance: float) -> Mask:
     """Return whether the head is at the goal, as one who sees them can tell, (B,) bool."""
     seen = np.clip(see_goal(situation), -4.0, 4.0).astype(np.float32)
-    return is_near(seen[:, 2:4], seen[:, 4:], TOLERANCE[situation.body.name])
+    return is_near(seen[:, 2:4], seen[:, 4:], tolerance)
 
 
-def reached(situation: Situation) -> Array:
+def reached(situation: Situation, tolerance: float) -> Array:
     """Return 1 where the head is at the goal, (B,)."""
-    return succeeds(situation).astype(np.float64)
+    return succeeds(situation, tolerance).astype(np.float64)
 
 
 def distance(situation: Situation) -> Array:
@@ -104,23 +134,36 @@ def distance(situation: Situation) -> Array:
     return goal[:, 2] - np.sqrt(x * x + z * z)
 
 
-def _flat(task: Task) -> dict[str, Any]:
-    """Return what the flat forms of both tasks share: all that is seen is in one row, the two places last."""
-    return dict(
-        name=f"{task.name}Goal", goal_size=3, goal_bounds=((-1.0, 1.0),) * 2 + ((-4.0, 4.0),) * 4,
-        goal_names=("heading/x", "heading/z", "achieved/x", "achieved/z", "desired/x", "desired/z"), see_goal=see_goal,
-        reward_terms={"reached": reached}, reward_weights={"reached": 1.0, "diverged": 0.0}, distance=distance,
-        succeeds=succeeds, ends_on_success=True, target=snake_reach.target,
+def goal_conditioned(
+    task: Task, *, draw_goal: Callable[[np.random.Generator, Situation], Array], tolerance: float
+) -> GoalTask:
+    """Return the goal-conditioned form of a task: bring the head to a place, with the animal and the starts of another.
+
+    Parameters
+    ----------
+    task : Task
+        Its name gets ``Goal`` at the end.
+    draw_goal : callable
+        As of a `Task`, the place (x, z) [m], and the way of the head to it [m], (3,).
+    tolerance : float
+        Distance of the head from the place that is near enough, in body lengths.
+    """
+    own = dict(
+        name=f"{task.name}Goal", goal_size=3, draw_goal=draw_goal, see_goal=see_goal,
+        goal_bounds=((-1.0, 1.0),) * 2 + ((-4.0, 4.0),) * 4,
+        goal_names=("heading/x", "heading/z", "achieved/x", "achieved/z", "desired/x", "desired/z"),
+        reward_terms={"reached": partial(reached, tolerance=tolerance)},
+        reward_weights={"reached": 1.0, "diverged": 0.0}, distance=distance,
+        succeeds=partial(succeeds, tolerance=tolerance), ends_on_success=True, target=snake_reach.target,
+        tolerance=tolerance,
     )  # fmt: skip
+    return GoalTask(**{each.name: getattr(task, each.name) for each in fields(task)} | own)
 
 
-GOAL_TASKS = {
-    task.name: task
-    for task in (
-        replace(snake_reach.TASK, **_flat(snake_reach.TASK), draw_goal=draw_snakes_goal),
-        replace(octopus_reach.TASK, **_flat(octopus_reach.TASK), draw_goal=draw_octopuses_goal),
-    )
-}
+GOAL_TASKS = (
+    goal_conditioned(snake_reach.TASK, draw_goal=draw_snakes_goal, tolerance=0.05),
+    goal_conditioned(octopus_reach.TASK, draw_goal=draw_octopuses_goal, tolerance=0.225),
+)
 
 
 def _parts(flat: NDArray[np.float32]) -> Parts:
@@ -143,15 +186,17 @@ def _refuse_weights(arguments: dict[str, Any]) -> None:
                          f"as compute_reward tells it, not {arguments['weights']!r}")  # fmt: skip
 
 
-class GoalBatchEnv(BatchEnv):
+# libraries such as skrl tell an environment by its class's direct bases, of which Gymnasium's has to be one
+class GoalBatchEnv(BatchEnv, VectorEnv):
     """A batch of animals, each with a goal that can be changed afterwards.
 
     Made by ``gymnasium.make_vec("elastica_gym/<Name>ReachGoal-v1", num_envs=...)``. Observations are a dict of
     arrays; that of an episode's last step in ``final_obs`` is an array of dicts, as in Gymnasium's own batches.
     """
 
-    def __init__(self, task: Task, num_envs: int = 1, **kwargs: Any) -> None:
+    def __init__(self, task: GoalTask, num_envs: int = 1, **kwargs: Any) -> None:
         _refuse_weights(kwargs)
+        self.tolerance = task.tolerance
         super().__init__(task, num_envs, **kwargs)
 
     def _make_spaces(self) -> None:
@@ -175,14 +220,15 @@ class GoalBatchEnv(BatchEnv):
 
     def compute_reward(self, achieved_goal: ArrayLike, desired_goal: ArrayLike, info: Any) -> Array:
         """Return the rewards of achieved goals when others were desired, (..., 2) to (...)."""
-        return is_near(achieved_goal, desired_goal, TOLERANCE[self.body.name]).astype(np.float64)
+        return is_near(achieved_goal, desired_goal, self.tolerance).astype(np.float64)
 
 
-class GoalEnv(SingleEnv):
+class GoalEnv(SingleEnv, gymnasium.Env):
     """One animal with a goal that can be changed afterwards; what ``gymnasium.make`` returns."""
 
-    def __init__(self, task: Task, **kwargs: Any) -> None:
+    def __init__(self, task: GoalTask, **kwargs: Any) -> None:
         _refuse_weights(kwargs)
+        self.tolerance = task.tolerance
         super().__init__(task, **kwargs)
         self.observation_space = _space(self.batch.single_observation_space)
 
@@ -198,4 +244,4 @@ class GoalEnv(SingleEnv):
 
     def compute_reward(self, achieved_goal: ArrayLike, desired_goal: ArrayLike, info: Any) -> Array:
         """Return the rewards of achieved goals when others were desired, (..., 2) to (...)."""
-        return is_near(achieved_goal, desired_goal, TOLERANCE[self.batch.body.name]).astype(np.float64)
+        return is_near(achieved_goal, desired_goal, self.tolerance).astype(np.float64)

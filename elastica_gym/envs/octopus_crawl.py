@@ -55,8 +55,8 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | toppled | -10 | 1 where the head has rolled or pitched by more than 60 degrees |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
-The info also has ``distance``, the way so far [m]; ``is_success``, whether that is half a body length or
-more; and ``termination_reason``: empty, ``time_limit``, ``toppled`` or ``diverged``.
+The info also has ``distance``, the way so far [m]; ``is_success``, whether that is half a body length or more; and
+``termination_reason``, a number: 0 running, 1 time_limit, 3 diverged or 4 toppled.
 
 Starting state
 --------------
@@ -75,8 +75,8 @@ finite, or a node or the object is faster than 50 m/s: then the last sound obser
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``weights``, ``spread`` ("anywhere"), ``render_mode``,
-``render_size``; and of `make_vec` ``autoreset_mode``.
+``max_episode_steps``, ``n_threads``, ``weights``, ``spread`` ("anywhere"), ``render_mode``, ``render_size``; and of
+`make_vec` ``autoreset_mode``.
 
 Version history
 ---------------

@@ -66,16 +66,15 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | fallen | -10 | 1 where the object leans by more than 45 degrees |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
-These are the terms of OctopusMove, OctopusGrab and OctopusReturn, where they are explained. The object is
-grabbed when an arm spans 200 degrees or more around its axis at the ends of all control steps in 0.5 s, and let
-go when no arm has spanned 150 degrees for more than 0.2 s. Success is when all of this is so: at one moment the head
-has been 0.2 m and the centre of mass 0.1 m from where it was at the start; the object has been moved by 0.1 m while it
-stood and was touched; it is held; the head is within 0.1 m of home, and the object within 0.3 m of the head.
-``scripts/score.py`` asks for more: that the surfaces of head and object have been within 0.05 m, and that the arm
-that has grabbed is the one that holds.
-All but the last six terms are differences of what is so far, so doing a thing again earns nothing. The info
-also has ``distance``, by how much the object is nearer to home than at the start [m]; ``is_success``; and
-``termination_reason``: empty, ``success``, ``time_limit``, ``toppled``, ``fallen`` or ``diverged``.
+These are the terms of OctopusMove, OctopusGrab and OctopusReturn, where they are explained. The object is grabbed when
+an arm spans 200 degrees or more around its axis at the ends of all control steps in 0.5 s, and let go when no arm has
+spanned 150 degrees for more than 0.2 s. Success is when all of this is so: at one moment the head has been 0.2 m and
+the centre of mass 0.1 m from where it was at the start; the object has been moved by 0.1 m while it stood and was
+touched; it is held; the head is within 0.1 m of home, and the object within 0.3 m of the head. ``scripts/score.py``
+asks for more: that the surfaces of head and object have been within 0.05 m, and that the arm that has grabbed is the
+one that holds. All but the last six terms are differences of what is so far, so doing a thing again earns nothing. The
+info also has ``distance``, by how much the object is nearer to home than at the start [m]; ``is_success``; and
+``termination_reason``, a number: 0 running, 1 time_limit, 2 success, 3 diverged, 4 toppled or 5 fallen.
 
 Starting state
 --------------
@@ -96,7 +95,7 @@ is faster than 50 m/s: then the last sound observation is returned.
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``weights``, ``spread`` ("anywhere", "arc" or "default"), ``render_mode``,
+``max_episode_steps``, ``n_threads``, ``weights``, ``spread`` ("anywhere", "arc" or "default"), ``render_mode``,
 ``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history

@@ -60,14 +60,14 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | fallen | -10 | 1 where the object leans by more than 45 degrees |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
-An arm's inner half is the one next to the head. The angle is that which the touching elements of an arm, at
-least five, span around the object's axis, from the first to the last of them, followed along the arm; of two
-arms the larger. Touching are surfaces with less than 2 mm between them. What an arm winds around the object is
-that angle of all its elements, each part of it times how near they are: 1 where they touch, falling to 0 at a gap
-of 0.15 m. The object is grabbed when an arm spans 200 degrees or more at the ends of all control steps in 0.5 s.
-Approach, wind and wrap are differences of what is so far, so letting go and taking hold again earns nothing. The
-info also has ``distance``, the length of the object's circumference that is wrapped [m]; ``is_success``; and
-``termination_reason``: empty, ``success``, ``time_limit``, ``toppled``, ``fallen`` or ``diverged``.
+An arm's inner half is the one next to the head. The angle is that which the touching elements of an arm, at least
+five, span around the object's axis, from the first to the last of them, followed along the arm; of two arms the
+larger. Touching are surfaces with less than 2 mm between them. What an arm winds around the object is that angle of
+all its elements, each part of it times how near they are: 1 where they touch, falling to 0 at a gap of 0.15 m. The
+object is grabbed when an arm spans 200 degrees or more at the ends of all control steps in 0.5 s. Approach, wind and
+wrap are differences of what is so far, so letting go and taking hold again earns nothing. The info also has
+``distance``, the length of the object's circumference that is wrapped [m]; ``is_success``; and ``termination_reason``,
+a number: 0 running, 1 time_limit, 2 success, 3 diverged, 4 toppled or 5 fallen.
 
 Starting state
 --------------
@@ -88,8 +88,8 @@ is faster than 50 m/s: then the last sound observation is returned.
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``weights``, ``spread`` ("default", "arc", "anywhere" or "near"), ``render_mode``,
-``render_size``; and of `make_vec` ``autoreset_mode``.
+``max_episode_steps``, ``n_threads``, ``weights``, ``spread`` ("default", "arc", "anywhere" or "near"),
+``render_mode``, ``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history
 ---------------

@@ -59,11 +59,10 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | fallen | -10 | 1 where the object leans by more than 45 degrees |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
-An arm's inner half is the one next to the head. The way of the object is from where its base was: steps add to
-it at whose end the animal touches it, and it leans by no more than 45 degrees. Approach and move are
-differences of what is so far, so going to and fro earns nothing. The info also has ``distance``, that way [m];
-``is_success``; and ``termination_reason``: empty, ``success``, ``time_limit``, ``toppled``, ``fallen`` or
-``diverged``.
+An arm's inner half is the one next to the head. The way of the object is from where its base was: steps add to it at
+whose end the animal touches it, and it leans by no more than 45 degrees. Approach and move are differences of what is
+so far, so going to and fro earns nothing. The info also has ``distance``, that way [m]; ``is_success``; and
+``termination_reason``, a number: 0 running, 1 time_limit, 2 success, 3 diverged, 4 toppled or 5 fallen.
 
 Starting state
 --------------
@@ -84,7 +83,7 @@ is faster than 50 m/s: then the last sound observation is returned.
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``weights``, ``spread`` ("default", "arc" or "anywhere"), ``render_mode``,
+``max_episode_steps``, ``n_threads``, ``weights``, ``spread`` ("default", "arc" or "anywhere"), ``render_mode``,
 ``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history

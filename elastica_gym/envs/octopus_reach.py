@@ -57,9 +57,9 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | toppled | -10 | 1 where the head has rolled or pitched by more than 60 degrees |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
-The gap is to the object as rods meet it, with domes of 0.05 m on its ends. Approaches add up to what it has
-shrunk in all, so hovering earns nothing. The info also has ``distance``, by how much it has shrunk since reset
-[m]; ``is_success``; and ``termination_reason``: empty, ``success``, ``time_limit``, ``toppled`` or ``diverged``.
+The gap is to the object as rods meet it, with domes of 0.05 m on its ends. Approaches add up to what it has shrunk in
+all, so hovering earns nothing. The info also has ``distance``, by how much it has shrunk since reset [m];
+``is_success``; and ``termination_reason``, a number: 0 running, 1 time_limit, 2 success, 3 diverged or 4 toppled.
 
 Starting state
 --------------
@@ -79,7 +79,7 @@ finite, or a node or the object is faster than 50 m/s: then the last sound obser
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``weights``, ``spread`` ("arc", "anywhere" or "default"), ``render_mode``,
+``max_episode_steps``, ``n_threads``, ``weights``, ``spread`` ("arc", "anywhere" or "default"), ``render_mode``,
 ``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history

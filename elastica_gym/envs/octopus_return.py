@@ -60,11 +60,10 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
 The object is held where the touching elements of an arm, at least five, span 150 degrees around its axis (see
-`elastica_gym.envs.octopus_grab`), and let go when they have spanned less at the end of each control step for
-more than 0.2 s. Home is a difference of what is so far, so going to and fro earns nothing; what is let go costs
-what it had earned. The info also has ``distance``, by how much the object is nearer to home than at the start
-[m]; ``is_success``; and ``termination_reason``: empty, ``success``, ``time_limit``, ``toppled``, ``fallen`` or
-``diverged``.
+`elastica_gym.envs.octopus_grab`), and let go when they have spanned less at the end of each control step for more than
+0.2 s. Home is a difference of what is so far, so going to and fro earns nothing; what is let go costs what it had
+earned. The info also has ``distance``, by how much the object is nearer to home than at the start [m]; ``is_success``;
+and ``termination_reason``, a number: 0 running, 1 time_limit, 2 success, 3 diverged, 4 toppled or 5 fallen.
 
 Starting state
 --------------
@@ -82,8 +81,8 @@ object is faster than 50 m/s: then the last sound observation is returned. What 
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``n_threads``, ``weights``, ``spread`` ("held"), ``render_mode``,
-``render_size``; and of `make_vec` ``autoreset_mode``.
+``max_episode_steps``, ``n_threads``, ``weights``, ``spread`` ("held"), ``render_mode``, ``render_size``; and of
+`make_vec` ``autoreset_mode``.
 
 Version history
 ---------------

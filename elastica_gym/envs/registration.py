@@ -1,8 +1,9 @@
-"""Ids: each is a task with keyword arguments."""
+"""Ids and their tasks: what is registered with Gymnasium, here and by others."""
 
 from typing import Any
 
 import gymnasium
+from gymnasium.wrappers import HumanRendering
 
 from . import (
     octopus_crawl,
@@ -15,49 +16,111 @@ from . import (
     snake_reach,
     snake_steer,
 )
-from .batch import BatchEnv
-from .goal import GOAL_TASKS, GoalBatchEnv, GoalEnv
+from .batch import RENDER_MODES, BatchEnv
+from .goal import GOAL_TASKS, GoalBatchEnv, GoalEnv, GoalTask
 from .single import SingleEnv
 from .task import Task
 
-NAMESPACE = "elastica_gym"
-TASKS: dict[str, Task] = {
-    module.TASK.name: module.TASK
-    for module in (snake_forward, snake_reach, snake_steer, octopus_crawl, octopus_reach, octopus_move, octopus_grab,
-                   octopus_return, octopus_fetch)
-}
-IDS = tuple(f"{NAMESPACE}/{name}-v1" for name in TASKS)
-GOAL_IDS = tuple(f"{NAMESPACE}/{name}-v1" for name in GOAL_TASKS)
+SHIPPED = {
+    f"elastica_gym/{task.name}-v1": task
+    for task in (
+        *(module.TASK for module in (snake_forward, snake_reach, snake_steer, octopus_crawl, octopus_reach,
+                                     octopus_move, octopus_grab, octopus_return, octopus_fetch)),
+        *GOAL_TASKS,
+    )
+}  # fmt: skip
+IDS = tuple(env_id for env_id, task in SHIPPED.items() if not isinstance(task, GoalTask))
+GOAL_IDS = tuple(env_id for env_id, task in SHIPPED.items() if isinstance(task, GoalTask))
 """Those whose observation is a dict with an achieved and a desired goal"""
 
-
-def make_single(*, task: str, **kwargs: Any) -> SingleEnv:
-    """Make the single environment of a task; what ``gymnasium.make`` calls."""
-    return SingleEnv(TASKS[task], **kwargs)
+_tasks: dict[str, Task] = {}
+"""By the id under which each is registered"""
 
 
-def make_batch(*, task: str, num_envs: int = 1, **kwargs: Any) -> BatchEnv:
-    """Make the batched environment of a task; what ``gymnasium.make_vec`` calls."""
-    return BatchEnv(TASKS[task], num_envs, **kwargs)
+def register(env_id: str, task: Task) -> None:
+    """Register a task, for ``gymnasium.make``, ``gymnasium.make_vec`` and the commands in ``agents``.
 
+    Parameters
+    ----------
+    env_id : str
+        Such as ``my_lab/SnakeTurn-v0``.
+    task : Task
+        A `GoalTask` makes environments whose goals can be changed afterwards.
 
-def make_goal_single(*, task: str, **kwargs: Any) -> GoalEnv:
-    """Make the single environment of a goal-conditioned task."""
-    return GoalEnv(GOAL_TASKS[task], **kwargs)
-
-
-def make_goal_batch(*, task: str, num_envs: int = 1, **kwargs: Any) -> GoalBatchEnv:
-    """Make the batched environment of a goal-conditioned task."""
-    return GoalBatchEnv(GOAL_TASKS[task], num_envs, **kwargs)
+    Notes
+    -----
+    Processes that are spawned, and ``agents``, have to import the module that registers: as with Gymnasium, the id
+    ``my_module:my_lab/SnakeTurn-v0`` does so. Environments can be pickled if the task's functions are a module's own.
+    """
+    _tasks[env_id] = task
+    # no max_episode_steps: the batch truncates, and make would add a second limit
+    gymnasium.register(env_id, entry_point=f"{__name__}:make_single", vector_entry_point=BATCH, kwargs={"task": env_id})
 
 
 def register_all() -> None:
-    """Register every id. No ``max_episode_steps``: the batch truncates, and make would add a second limit."""
-    for names, single, batch in ((TASKS, make_single, make_batch), (GOAL_TASKS, make_goal_single, make_goal_batch)):
-        for name in names:
-            gymnasium.register(
-                f"{NAMESPACE}/{name}-v1",
-                entry_point=f"{__name__}:{single.__name__}",
-                vector_entry_point=f"{__name__}:{batch.__name__}",
-                kwargs={"task": name},
-            )
+    """Register every id of this package."""
+    for env_id, task in SHIPPED.items():
+        register(env_id, task)
+
+
+def registered_ids() -> tuple[str, ...]:
+    """Return all ids whose environments come from `register`, or call the same entry points with other arguments."""
+    return tuple(env_id for env_id, spec in gymnasium.registry.items() if spec.vector_entry_point == BATCH)
+
+
+def task_of(env_id: str) -> Task:
+    """Return the task of one of `registered_ids`, before which ``my_module:`` may stand.
+
+    Raises
+    ------
+    ValueError
+        If it is none of them.
+    """
+    spec = gymnasium.registry.get(env_id.rpartition(":")[2])
+    if spec is None or spec.vector_entry_point != BATCH:
+        raise ValueError(f"env_id must be one of {', '.join(registered_ids())}, not {env_id!r}")
+    return _registered(spec.kwargs["task"])
+
+
+def make_single(*, task: str, render_mode: str | None = None, **kwargs: Any) -> gymnasium.Env:
+    """Make the single environment of a registered task; what ``gymnasium.make`` calls."""
+    if render_mode == "human":
+        _require_window()
+        return HumanRendering(make_single(task=task, render_mode="rgb_array", **kwargs))
+    found = _registered(task)
+    kwargs["render_mode"] = render_mode
+    return GoalEnv(found, **kwargs) if isinstance(found, GoalTask) else SingleEnv(found, **kwargs)
+
+
+def make_batch(*, task: str, num_envs: int = 1, **kwargs: Any) -> BatchEnv:
+    """Make the batched environment of a registered task; what ``gymnasium.make_vec`` calls."""
+    found = _registered(task)
+    if isinstance(found, GoalTask):
+        return GoalBatchEnv(found, num_envs, **kwargs)
+    return BatchEnv(found, num_envs, **kwargs)
+
+
+BATCH = f"{__name__}:{make_batch.__name__}"
+"""Entry point by which Gymnasium's registry tells our environments"""
+
+# Gymnasium asks the entry point how it can draw, and makes rgb_array_list of rgb_array
+make_single.metadata = {"render_modes": ["human", *RENDER_MODES]}  # type: ignore[attr-defined]
+
+
+def _registered(env_id: str) -> Task:
+    if env_id not in _tasks:
+        raise ValueError(f"task must be a registered id, not {env_id!r}: import the module that registers it")
+    return _tasks[env_id]
+
+
+def _require_window() -> None:
+    """Make sure that windows can be opened."""
+    instead = "render_mode='rgb_array' draws without a window, as does elastica_gym.viz.record_rollout"
+    try:
+        import pygame
+    except ImportError as error:
+        raise ImportError(f"render_mode='human' needs pygame (pip install pygame); {instead}") from error
+    try:
+        pygame.display.init()
+    except pygame.error as error:
+        raise RuntimeError(f"render_mode='human' finds no display ({error}); {instead}") from error

@@ -21,7 +21,8 @@ class SingleEnv(gymnasium.Env):
     ----------
     task : Task
     render_mode : str, optional
-        ``"rgb_array"``, with which `render` draws a picture.
+        ``"rgb_array"``, with which `render` draws a picture. ``gymnasium.make`` also takes ``"rgb_array_list"``, which
+        collects the pictures of an episode, and ``"human"``, which shows them in a window and needs pygame.
     **kwargs
         Arguments of `BatchEnv`.
 
@@ -46,7 +47,7 @@ class SingleEnv(gymnasium.Env):
         # the batch draws from this environment's own generator, also where a user has put one in
         self.batch._generators, self.batch._seeds = [self.np_random], [self.np_random_seed]
         observations, info = self.batch.reset(options=options)
-        return observations[0], info
+        return observations[0], _values(info)
 
     def step(self, action: Array) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
         """Advance by one control step; see `BatchEnv.step`."""
@@ -54,8 +55,7 @@ class SingleEnv(gymnasium.Env):
         if values.shape != self.action_space.shape:
             raise ValueError(f"action must have shape {self.action_space.shape}, not {values.shape}")
         observations, rewards, terminated, truncated, info = self.batch.step(values[None])
-        return (observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]),
-                {name: value.item(0) for name, value in info.items() if not name.startswith("_")})  # fmt: skip
+        return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), _values(info)
 
     def render(self) -> "Image | None":
         """Draw the animal as it is now, (height, width, 3) uint8; see `BatchEnv.render`."""
@@ -66,6 +66,11 @@ class SingleEnv(gymnasium.Env):
         """Close the batch."""
         self.batch.close()
 
+    @property
+    def termination_reasons(self) -> tuple[str, ...]:
+        """Names of the reasons by number; see `BatchEnv.termination_reasons`."""
+        return self.batch.termination_reasons
+
     def get_state(self) -> dict[str, Any]:
         """Return all that decides what comes next; see `BatchEnv.get_state`."""
         return self.batch.get_state()
@@ -75,3 +80,8 @@ class SingleEnv(gymnasium.Env):
         self.batch.set_state(saved)
         if self.batch._generators is not None:
             self._np_random, self._np_random_seed = self.batch._generators[0], self.batch._seeds[0]
+
+
+def _values(info: dict[str, Any]) -> dict[str, Any]:
+    """Return the values of the one environment, without the masks that say whose they are."""
+    return {name: value.item(0) for name, value in info.items() if not name.startswith("_")}

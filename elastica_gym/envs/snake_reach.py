@@ -49,9 +49,9 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
-Approaches add up to the way made, wherever the head went between, so hovering earns nothing. The info
-also has ``distance``, how much nearer the head is to the target than at reset [m]; ``is_success``; and
-``termination_reason``: empty, ``success``, ``time_limit`` or ``diverged``. Distances are horizontal.
+Approaches add up to the way made, wherever the head went between, so hovering earns nothing. The info also has
+``distance``, how much nearer the head is to the target than at reset [m]; ``is_success``; and ``termination_reason``,
+a number: 0 running, 1 time_limit, 2 success or 3 diverged. Distances are horizontal.
 
 Starting state
 --------------
@@ -67,7 +67,7 @@ sound observation is returned. Truncated after 20 s, which are 400 control steps
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00011 s), ``duration``,
-``n_threads``, ``weights``, ``spread`` ("bent"), ``body_kwargs``, ``render_mode``,
+``max_episode_steps``, ``n_threads``, ``weights``, ``spread`` ("bent"), ``body_kwargs``, ``render_mode``,
 ``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history

@@ -49,11 +49,11 @@ The sum of these terms, each of which is in the info as ``reward_<term>`` with i
 | effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
 | diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
 
-The error is the length of the difference between the velocity of the centre of mass and the commanded one, with
-the former smoothed over a time constant of 1 s, since a gait goes faster and slower within its period. A new command
+The error is the length of the difference between the velocity of the centre of mass and the commanded one, with the
+former smoothed over a time constant of 1 s, since a gait goes faster and slower within its period. A new command
 changes the angle at once, which is not paid for. The info also has ``distance``, the way made in the directions
 commanded at the time [m]; ``is_success``, whether the error, over the time so far, is on average a quarter of the
-commanded speed or less; and ``termination_reason``: empty, ``time_limit`` or ``diverged``.
+commanded speed or less; and ``termination_reason``, a number: 0 running, 1 time_limit or 3 diverged.
 
 Starting state
 --------------
@@ -72,7 +72,7 @@ faster than 10 m/s; the last sound observation is returned.
 Arguments
 ---------
 Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00011 s), ``duration``,
-``n_threads``, ``weights``, ``spread`` ("bent"), ``body_kwargs``, ``render_mode``,
+``max_episode_steps``, ``n_threads``, ``weights``, ``spread`` ("bent"), ``body_kwargs``, ``render_mode``,
 ``render_size``; and of `make_vec` ``autoreset_mode``.
 
 Version history

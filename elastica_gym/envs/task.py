@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +18,17 @@ GOAL_NAMES = ("goal/forward", "goal/right", "home/forward", "home/right")
 """What the octopus sees of its goals: a direction to go, and the way home"""
 GOAL_BOUNDS = ((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0))
 """Least and largest value of each"""
+
+
+class TerminationReason(IntEnum):
+    """Why an episode has ended, as ``termination_reason`` in the info; a task's own failures have the numbers after."""
+
+    RUNNING = 0
+    """It has not ended"""
+    TIME_LIMIT = 1
+    SUCCESS = 2
+    DIVERGED = 3
+    """The physics has failed"""
 
 
 class Situation(NamedTuple):
@@ -81,7 +93,7 @@ class Task:
     reward_terms : dict of str to callable
         From a situation, each term before its weight, (B,).
     reward_weights : dict of str to float
-        Weight of each term.
+        Weight of each term, and of ``diverged``, which is 1 where the simulation has diverged.
     progress_names : tuple of str
         Names of the M numbers that the task follows through an episode; by default none.
     follow : callable
@@ -94,7 +106,7 @@ class Task:
     ends_on_success : bool
         Whether an episode ends with success.
     failures : dict of str to callable
-        By the name that ``termination_reason`` gives it, from a situation, whether the task has failed, which ends the
+        By its name among the ``termination_reasons``, from a situation, whether the task has failed, which ends the
         episode, (B,) bool.
     target : callable
         From goals, the target's position in the lab [m], (B, 3), or None where there is none to show.
@@ -121,6 +133,32 @@ class Task:
     failures: dict[str, Callable[[Situation], Mask]] = field(default_factory=dict)
     target: Callable[[Array], Array | None]
     scripted_policy: Callable[[Any], Array]
+
+    def __post_init__(self) -> None:
+        if not self.starts:
+            raise ValueError("starts must have at least one way to draw a start")
+        if len(self.goal_bounds) != len(self.goal_names):
+            raise ValueError(f"goal_bounds must have a least and a largest value for each of {self.goal_names}, "
+                             f"not {self.goal_bounds}")  # fmt: skip
+        weighted = {*self.reward_terms, "diverged"}
+        if set(self.reward_weights) != weighted:
+            raise ValueError(f"reward_weights must have a weight for each of {', '.join(sorted(weighted))}, not for "
+                             f"{', '.join(self.reward_weights)}")  # fmt: skip
+        reasons = self.termination_reasons
+        if len(set(reasons)) < len(reasons):
+            raise ValueError(f"failures must have other names than {', '.join(reasons[: len(TerminationReason)])}, "
+                             f"not {', '.join(self.failures)}")  # fmt: skip
+
+    @property
+    def termination_reasons(self) -> tuple[str, ...]:
+        """Names of the reasons why an episode ends, by number: those of `TerminationReason`, then the failures."""
+        return (*(reason.name.lower() for reason in TerminationReason), *self.failures)
+
+    def observations(self, body: Body) -> list[tuple[str, float, float]]:
+        """Return the name and the least and largest value of each number that an animal of this task observes."""
+        clock = [("clock/sine", -1.0, 1.0), ("clock/cosine", -1.0, 1.0), ("time_left", 0.0, 1.0)]
+        goal = [(name, *bounds) for name, bounds in zip(self.goal_names, self.goal_bounds, strict=True)]
+        return body.readings() + clock + goal
 
 
 def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:

@@ -46,7 +46,7 @@ def test_evaluation_is_what_the_single_environment_does():
             total, done = total + reward, terminated or truncated
         assert result.returns[i] == pytest.approx(total)
         assert result.distances[i] == info["distance"]
-        assert result.reasons[i] == info["termination_reason"]
+        assert result.reasons[i] == env.unwrapped.termination_reasons[info["termination_reason"]]
     env.close()
 
 

@@ -4,13 +4,14 @@ from stable_baselines3.common.utils import LinearSchedule
 from torch import nn
 
 from agents import hyperparameters
-from agents.checks import EXTRAS, BadInputError, environment_ids
+from agents.checks import EXTRAS, BadInputError
+from elastica_gym.envs import IDS
 from tests.agents.commands import FORWARD, ROOT
 
 
 @pytest.mark.parametrize("algo", hyperparameters.ALGORITHMS)
 def test_every_environment_has_hyperparameters(algo):
-    for env_id in environment_ids():
+    for env_id in IDS:
         values = hyperparameters.load(algo, env_id)
         assert values["n_timesteps"] > 0
         assert "policy" in hyperparameters.algorithm_arguments(values)

@@ -5,8 +5,12 @@ import numpy as np
 import pytest
 import torch
 from numpy.testing import assert_allclose
+from stable_baselines3 import PPO
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 
 import elastica_gym  # noqa: F401
+from agents.rhythm import RhythmicPolicy
 from agents.symmetry import SymmetricPolicy
 from elastica_gym.envs.batch import CLOCK_PERIOD
 from elastica_gym.muscles import activation_names
@@ -89,12 +93,34 @@ def test_twice_mirrored_is_as_before(env_id):
     assert np.array_equal(mirrored(envs, mirrored(envs, values, names), names), values)
 
 
+@pytest.mark.parametrize("policy", [SymmetricPolicy, RhythmicPolicy])
+@pytest.mark.parametrize("env_id", TRAINED)
+def test_policies_need_nothing_but_the_spaces(env_id, policy, tmp_path):
+    """So that whoever replaces all of their arguments, as Optuna in rl_zoo3 does, can make one."""
+    env = VecNormalize(DummyVecEnv([lambda: Monitor(gymnasium.make(env_id, duration=0.5))]))
+    model = PPO(policy, env, n_steps=8, batch_size=8, device="cpu", policy_kwargs=dict(net_arch=[8]))
+    model.learn(8)
+    seen = env.reset()
+    wanted, _ = model.predict(seen, deterministic=True)
+    model.save(tmp_path / "model.zip")
+    model.policy.save(tmp_path / "policy.pt")
+    for loaded in (PPO.load(tmp_path / "model.zip", env=env), PPO.load(tmp_path / "model.zip"),
+                   policy.load(tmp_path / "policy.pt")):  # fmt: skip
+        np.testing.assert_array_equal(loaded.predict(seen, deterministic=True)[0], wanted)
+
+
+@pytest.mark.parametrize("policy", [SymmetricPolicy, RhythmicPolicy])
+def test_spaces_that_do_not_say_what_their_numbers_are_are_refused(policy):
+    observations = gymnasium.spaces.Box(-1.0, 1.0, (159,))
+    with pytest.raises(ValueError, match=f"{policy.__name__} needs the spaces of an elastica_gym environment, not Box"):
+        policy(observations, gymnasium.spaces.Box(-1.0, 1.0, (42,)), lambda _: 1e-3)
+
+
 @pytest.mark.parametrize("env_id", TRAINED)
 def test_the_policy_answers_in_the_mirror_with_the_mirror_image(env_id):
     envs = gymnasium.make_vec(env_id, num_envs=5).unwrapped
     torch.manual_seed(0)
-    policy = SymmetricPolicy(envs.single_observation_space, envs.single_action_space, lambda _: 1e-3, env_id=env_id,
-                             ortho_init=False)  # fmt: skip
+    policy = SymmetricPolicy(envs.single_observation_space, envs.single_action_space, lambda _: 1e-3, ortho_init=False)
     seen = envs.reset(seed=0)[0]
     there = mirrored(envs, seen, envs.observation_names).astype(np.float32)
     actions, _ = policy.predict(seen, deterministic=True)

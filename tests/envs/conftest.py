@@ -4,16 +4,18 @@ import pytest
 
 from elastica_gym.envs import GOAL_IDS, IDS
 
+from .toy import TOY, TOY_GOAL
+
 SHORT = 0.5
 """Episode in most tests [s]: ten control steps"""
 
 
-@pytest.fixture(params=IDS)
+@pytest.fixture(params=(*IDS, TOY))
 def env_id(request):
     return request.param
 
 
-@pytest.fixture(params=(*IDS, *GOAL_IDS))
+@pytest.fixture(params=(*IDS, TOY, *GOAL_IDS, TOY_GOAL))
 def any_id(request):
     """Also those whose observation is a dict: for tests that do not look into it."""
     return request.param

@@ -1,5 +1,6 @@
 """What every registered environment keeps: a new one is tested for free."""
 
+import copy
 import itertools
 import multiprocessing
 import pickle
@@ -10,6 +11,8 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
+
+from elastica_gym.envs import BatchEnv, task_of
 
 from .conftest import SHORT, flat, random_actions
 
@@ -180,9 +183,9 @@ def test_state_of_an_environment_made_otherwise_is_refused(any_id, make_vec, cha
 def test_pickled_environment_goes_on_alike(any_id, make_vec):
     env = make_vec(any_id)
     roll(env, random_actions(9, 3, 2), 0)
-    copy = pickle.loads(pickle.dumps(env))
+    pickled = pickle.loads(pickle.dumps(env))
     for action in random_actions(10, 9, 2):
-        assert_same(env.step(action)[:4], copy.step(action)[:4])
+        assert_same(env.step(action)[:4], pickled.step(action)[:4])
 
 
 def _worker(env_id, queue):
@@ -202,6 +205,20 @@ def test_worker_processes_give_the_same(env_id, make_vec, method):
     assert_same(queue.get(timeout=120), here)
     process.join(timeout=30)
     assert process.exitcode == 0
+
+
+def test_other_libraries_tell_it_by_a_direct_base_of_gymnasiums(any_id, make_vec):
+    """As skrl does, which looks no further."""
+    for env in (make_vec(any_id), gymnasium.make(any_id).unwrapped):
+        assert any(base.__module__.startswith("gymnasium.") for base in type(env).__bases__)
+
+
+def test_a_deep_copy_goes_on_alike(any_id, make_vec):
+    env = make_vec(any_id)
+    roll(env, random_actions(9, 3, 2), 0)
+    copied = copy.deepcopy(env)
+    for action in random_actions(10, 9, 2):
+        assert_same(env.step(action)[:4], copied.step(action)[:4])
 
 
 def test_closing_twice_is_fine(any_id):
@@ -252,7 +269,7 @@ def test_step_before_reset_says_so(any_id, make_vec):
         ({"n_threads": -1}, "n_threads must be a whole number from 1"),
         ({"autoreset_mode": "same_step"}, "autoreset_mode must be .* 'SameStep'"),
         ({"weights": {"speed": 1.0}}, "no term 'speed'"),
-        ({"weights": {"effort": float("nan")}}, "must be a finite number, not nan"),
+        ({"weights": {"diverged": float("nan")}}, "must be a finite number, not nan"),
         ({"body_kwargs": {"legs": 4}}, "body_kwargs: .* unexpected keyword argument 'legs'"),
         ({"spread": "nowhere"}, "spread must be one of .*, not 'nowhere'"),
         ({"render_mode": "human"}, "render_mode must be 'rgb_array' or None, not 'human'"),
@@ -261,11 +278,8 @@ def test_step_before_reset_says_so(any_id, make_vec):
     ],
 )
 def test_arguments_that_cannot_be_are_refused_at_construction(env_id, kwargs, message):
-    from elastica_gym.envs import TASKS, BatchEnv
-
-    task = TASKS[env_id.split("/")[1].removesuffix("-v1")]
     with pytest.raises(ValueError, match=message):
-        BatchEnv(task, **kwargs)
+        BatchEnv(task_of(env_id), **kwargs)
 
 
 def test_four_thousand_animals_at_once(env_id, make_vec):

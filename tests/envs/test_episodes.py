@@ -4,6 +4,9 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
+from gymnasium.wrappers.vector import RecordEpisodeStatistics
+
+from elastica_gym.envs import TerminationReason
 
 from .conftest import SHORT, flat
 
@@ -48,7 +51,7 @@ def test_same_step_returns_the_last_observation_aside(env_id, make_vec):
     assert truncated.all() and info["_final_obs"].all()
     np.testing.assert_array_equal(np.stack(list(info["final_obs"])), expected[0])
     np.testing.assert_array_equal(reward, expected[1])
-    assert (info["final_info"]["termination_reason"] == "time_limit").all()
+    assert (info["final_info"]["termination_reason"] == TerminationReason.TIME_LIMIT).all()
     assert not np.array_equal(now, expected[0]) and not np.array_equal(now, first)
     assert (same.elapsed == 0).all()
 
@@ -108,18 +111,117 @@ def test_options_that_cannot_be_are_refused(env_id, make_vec, options, message):
         make_vec(env_id, 3, autoreset_mode=AutoresetMode.DISABLED).reset(options=options)
 
 
-def test_infos_say_for_whom_they_are(any_id, make_vec):
-    """As in Gymnasium's own batches: the first observation of an episode comes with an empty info."""
-    for mode in (AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP):
-        env = make_vec(any_id, 2, autoreset_mode=mode)
-        env.reset(seed=0)
-        for _ in range(STEPS - 1):
-            assert env.step(np.zeros((2, 42)))[4]["_distance"].all()
-        info = env.step(np.zeros((2, 42)))[4]
-        if mode == AutoresetMode.NEXT_STEP:
-            assert info["_distance"].all()
-            info = env.step(np.zeros((2, 42)))[4]
-        assert not info["_distance"].any()
+def reset_and_steps(env, steps, zeros):
+    """The info of a reset and those of some steps."""
+    _, info = env.reset(seed=0)
+    return [info, *(env.step(zeros)[4] for _ in range(steps))]
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+def test_reset_and_every_step_have_an_info_of_the_same_form(any_id, make_vec, mode):
+    env = make_vec(any_id, 2, autoreset_mode=mode)
+    single = gymnasium.make(any_id, duration=SHORT)
+    together = reset_and_steps(env, STEPS + 1, np.zeros((2, 42)))
+    alone = reset_and_steps(single, STEPS, np.zeros(42))
+    for info in together:
+        forms = {name: (value.shape, value.dtype) for name, value in info.items() if "final" not in name}
+        assert forms == {name: (value.shape, value.dtype) for name, value in together[0].items()}
+        assert all(info[f"_{name}"].all() for name in alone[0])
+        # as text they would be of no use to those who make tensors of them
+        assert all(value.dtype.kind in "bif" for value in (*info.values(), *info.get("final_info", info).values())
+                   if isinstance(value, np.ndarray) and value is not info.get("final_obs"))  # fmt: skip
+    kinds = [{name: type(value) for name, value in info.items()} for info in alone]
+    assert kinds == kinds[:1] * len(kinds) and set(kinds[0]) == {n for n in together[0] if not n.startswith("_")}
+    single.close()
+
+
+@pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
+def test_an_episode_that_begins_by_itself_has_the_info_of_a_reset(any_id, make_vec, mode):
+    env = make_vec(any_id, 2, autoreset_mode=mode)
+    first, *_ = infos = reset_and_steps(env, STEPS + (mode == AutoresetMode.NEXT_STEP), np.zeros((2, 42)))
+    assert not first["is_success"].any() and (first["termination_reason"] == TerminationReason.RUNNING).all()
+    for name in (f"reward_{term}" for term in env.task.reward_weights):
+        assert (first[name] == 0.0).all() and (infos[-1][name] == 0.0).all()
+    np.testing.assert_allclose(first["distance"], 0.0, atol=1e-6)
+    assert (infos[-1]["termination_reason"] == TerminationReason.RUNNING).all()
+    ended = infos[STEPS].get("final_info", infos[STEPS])
+    assert (ended["termination_reason"] == TerminationReason.TIME_LIMIT).all()
+
+
+def test_a_partial_reset_has_the_info_of_those_that_begin(any_id, make_vec):
+    env = make_vec(any_id, 3, autoreset_mode=AutoresetMode.DISABLED)
+    env.reset(seed=0)
+    env.step(np.ones((3, 42)))
+    mask = np.array([False, True, False])
+    info = env.reset(options={"reset_mask": mask})[1]
+    assert all((info[name] == mask).all() for name in info if name.startswith("_"))
+
+
+def truncated_after(env, shape, most=15):
+    """Steps until everything is truncated, and the observations on the way."""
+    seen = [flat(env.reset(seed=0)[0])]
+    for step in range(1, most + 1):
+        observations, _, _, truncated, _ = env.step(np.zeros(shape))
+        seen.append(flat(observations))
+        if np.all(truncated):
+            return step, np.array(seen)
+    return None, np.array(seen)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "steps"),
+    [
+        ({"max_episode_steps": 10}, 10),
+        ({"max_episode_steps": 10, "duration": 0.25}, 5),
+        ({"max_episode_steps": -1, "duration": 0.25}, 5),
+        ({"max_episode_steps": None, "duration": 0.25}, 5),
+    ],
+)
+def test_max_episode_steps_and_duration_both_limit_episodes_however_they_are_made(any_id, arguments, steps):
+    batch = gymnasium.make_vec(any_id, num_envs=2, autoreset_mode=AutoresetMode.DISABLED, **arguments)
+    single = gymnasium.make(any_id, **arguments)
+    many, seen = truncated_after(batch, (2, 42))
+    one, alone = truncated_after(single, (42,))
+    assert many == one == steps
+    np.testing.assert_array_equal(seen[:, 0], alone)
+    batch.close()
+    single.close()
+
+
+@pytest.mark.parametrize("steps", [0, -2, 2.5, "10"])
+def test_max_episode_steps_that_cannot_be_are_refused(any_id, make_vec, steps):
+    with pytest.raises(ValueError, match="max_episode_steps must be a whole number from 1"):
+        make_vec(any_id, max_episode_steps=steps)
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+def test_gymnasiums_statistics_are_those_of_whole_episodes(any_id, make_vec, mode):
+    env = RecordEpisodeStatistics(make_vec(any_id, 2, autoreset_mode=mode))
+    env.reset(seed=0)
+    total, found = np.zeros(2), 0
+    for _ in range(2 * STEPS + 3):
+        _, reward, terminated, truncated, info = env.step(np.full((2, 42), 0.05))
+        total += reward
+        if (ended := terminated | truncated).all():
+            found += 1
+            assert info["episode"]["l"].tolist() == [STEPS, STEPS]
+            np.testing.assert_allclose(info["episode"]["r"], total, rtol=1e-6, atol=1e-9)
+            total[:] = 0.0
+            if mode == AutoresetMode.DISABLED:
+                env.reset(options={"reset_mask": ended})
+    assert found == 2
+
+
+def test_gymnasium_turns_all_that_flat_ones_return_into_tensors(env_id, make_vec):
+    pytest.importorskip("torch")
+    pytest.importorskip("array_api_compat")
+    from gymnasium.wrappers.vector import NumpyToTorch
+
+    env = NumpyToTorch(make_vec(env_id, 2, autoreset_mode=AutoresetMode.SAME_STEP))
+    env.reset(seed=0)
+    for _ in range(STEPS):
+        info = env.step(env.action_space.sample())[4]
+    assert info["final_info"]["termination_reason"].tolist() == [TerminationReason.TIME_LIMIT] * 2
 
 
 def test_scripted_policy_survives_anothers_divergence(any_id, make_vec):
@@ -155,10 +257,11 @@ def test_divergence_ends_only_its_own_environment(env_id, make_vec, mode):
     assert rewards[1] == sick.task.reward_weights["diverged"] < 0.0
     if mode == AutoresetMode.SAME_STEP:
         np.testing.assert_array_equal(info["final_obs"][1], last[1])
-        assert info["final_info"]["termination_reason"][1] == "diverged"
+        assert info["final_info"]["termination_reason"][1] == TerminationReason.DIVERGED
     else:
         np.testing.assert_array_equal(observations[1], last[1])
-        assert info["termination_reason"].tolist() == ["", "diverged", ""]
+        running, diverged = TerminationReason.RUNNING, TerminationReason.DIVERGED
+        assert info["termination_reason"].tolist() == [running, diverged, running]
     # and a new episode is sound again
     if mode == AutoresetMode.DISABLED:
         sick.reset(options={"reset_mask": terminated})

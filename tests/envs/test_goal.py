@@ -6,12 +6,13 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
-from elastica_gym.envs import GOAL_IDS
+from elastica_gym.envs import GOAL_IDS, task_of
 
 from .conftest import SHORT, random_actions
+from .toy import TOY_GOAL
 
 
-@pytest.fixture(params=GOAL_IDS)
+@pytest.fixture(params=(*GOAL_IDS, TOY_GOAL))
 def goal_id(request):
     return request.param
 
@@ -59,7 +60,7 @@ def test_rewards_of_many_goals_at_once(goal_id, make_vec):
     env = make_vec(goal_id, 1)
     rng = np.random.default_rng(0)
     achieved, desired = rng.uniform(-0.3, 0.3, (2, 50, 2)).astype(np.float32)
-    tolerance = {"snake": 0.05, "octopus": 0.225}[env.body.name]
+    tolerance = task_of(goal_id).tolerance
     rewards = env.compute_reward(achieved, desired, [{}] * 50)
     np.testing.assert_array_equal(rewards, np.hypot(*(achieved - desired).T) <= tolerance)
     assert 0.0 < rewards.mean() < 1.0

@@ -16,6 +16,7 @@ from elastica_gym.viz.frames import FIELD_OF_VIEW, following
 from .conftest import random_actions
 
 SNAKE, OCTOPUS = "elastica_gym/SnakeReach-v1", "elastica_gym/OctopusFetch-v1"
+GOAL = "elastica_gym/SnakeReachGoal-v1"
 DRAWN = {"render_mode": "rgb_array", "render_size": (96, 64)}
 
 
@@ -142,6 +143,51 @@ def test_a_forked_one_goes_on_and_says_that_it_cannot_draw(drawing):
         os._exit(2)
     assert os.waitpid(child, 0)[1] == 0
     env.render()
+
+
+@pytest.mark.parametrize("env_id", [SNAKE, GOAL])
+def test_gymnasium_collects_the_pictures_of_an_episode(offscreen, env_id):
+    env = gymnasium.make(env_id, duration=0.5, **DRAWN | {"render_mode": "rgb_array_list"})
+    env.reset(seed=0)
+    for _ in range(3):
+        env.step(np.zeros(42))
+    frames = env.render()
+    assert env.render_mode == "rgb_array_list" and [frame.shape for frame in frames] == [(64, 96, 3)] * 4
+    assert env.render() == []
+    env.close()
+
+
+@pytest.mark.parametrize("env_id", [SNAKE, GOAL])
+def test_a_window_shows_what_happens(offscreen, env_id, monkeypatch):
+    pygame = pytest.importorskip("pygame")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    env = gymnasium.make(env_id, duration=0.5, **DRAWN | {"render_mode": "human"})
+    env.reset(seed=0)
+    env.step(np.zeros(42))
+    shown = pygame.surfarray.array3d(pygame.display.get_surface()).swapaxes(0, 1)
+    np.testing.assert_array_equal(shown, env.unwrapped.render())
+    assert env.render() is None and env.render_mode == "human"
+    env.close()
+
+
+def test_where_no_window_can_be_opened_another_way_is_told(monkeypatch):
+    instead = "render_mode='rgb_array' draws without a window"
+    monkeypatch.setitem(sys.modules, "pygame", None)
+    with pytest.raises(ImportError, match=rf"'human' needs pygame \(pip install pygame\); {instead}"):
+        gymnasium.make(SNAKE, render_mode="human")
+
+
+def test_without_a_display_another_way_is_told(monkeypatch):
+    pytest.importorskip("pygame").display.quit()
+    monkeypatch.setenv("SDL_VIDEODRIVER", "none of them")
+    with pytest.raises(RuntimeError, match=r"'human' finds no display \(.*\); render_mode='rgb_array' draws"):
+        gymnasium.make(SNAKE, render_mode="human")
+
+
+@pytest.mark.parametrize("mode", ["human", "rgb_array_list", "ansi"])
+def test_batches_refuse_other_modes_and_say_who_takes_them(mode):
+    with pytest.raises(ValueError, match=rf"not '{mode}': gymnasium.make takes 'human' and 'rgb_array_list'"):
+        gymnasium.make_vec(SNAKE, num_envs=2, render_mode=mode)
 
 
 def test_closing_twice_is_fine(drawing):

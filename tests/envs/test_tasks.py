@@ -121,5 +121,6 @@ def test_toppling_ends_an_octopus_and_costs(make_vec):
         if terminated[0]:
             break
     assert terminated.tolist() == [True, False]
-    assert info["termination_reason"][0] == "toppled" and info["reward_toppled"].tolist() == [-10.0, 0.0]
+    assert env.termination_reasons[info["termination_reason"][0]] == "toppled"
+    assert info["reward_toppled"].tolist() == [-10.0, 0.0]
     assert reward[0] < -9.0

@@ -1,0 +1,73 @@
+"""The commands take tasks that are registered elsewhere, and policies that are Python files."""
+
+import json
+
+import pytest
+
+from agents.checks import choose_environment
+from agents.evaluate import evaluate
+from agents.policies import BASELINES, baseline
+from tests.agents.commands import FORWARD, SMALL_PPO, run
+from tests.agents.test_bad_input import refused
+from tests.envs.toy import TOY, TOY_GOAL
+
+MODULE = "tests.envs.toy"
+POLICY = """
+import numpy as np
+
+steps = 0
+
+def policy(observation):
+    global steps
+    steps += 1
+    return np.full(42, 0.01 * steps * np.sign(observation[0]), dtype=np.float32)
+"""
+
+
+def test_a_task_from_elsewhere_is_trained_and_evaluated(tmp_path):
+    folder = tmp_path / "run"
+    run("agents.train", "--env", f"{MODULE}:{TOY}", "--steps", 40, "--folder", folder, *SMALL_PPO)
+    output = run("agents.evaluate", "--run", folder, "--episodes", 2)
+    assert "reward: away" in output
+    run("agents.train", "--resume", folder, "--steps", 80)
+
+
+def test_an_id_without_the_module_that_registers_it_is_unknown():
+    assert f"Unknown environment '{TOY}'" in refused("agents.train", "--env", TOY)
+    assert "Cannot import the module 'no_such'" in refused("agents.train", "--env", f"no_such:{TOY}")
+    near = refused("agents.evaluate", "--policy", "zero", "--env", f"{MODULE}:tests/SnakeAwa-v0")
+    assert f"did you mean '{TOY}'" in near
+
+
+@pytest.mark.parametrize("name", BASELINES)
+def test_policies_that_do_not_look_at_observations_are_evaluated_on_goals(name):
+    assert choose_environment(TOY_GOAL, goals=True) == TOY_GOAL
+    result = evaluate(baseline(name), TOY_GOAL, episodes=2, seed=0, env_kwargs={"duration": 0.5})
+    assert set(result.terms) == {"reached", "diverged"}
+
+
+@pytest.mark.parametrize(
+    ("module", "arguments"), [("agents.train", ()), ("agents.evaluate", ("--pretrained", "snake_reach_ppo"))]
+)
+def test_commands_that_cannot_take_goals_say_how_to_train_on_them(module, arguments):
+    message = refused(module, "--env", "elastica_gym/SnakeReachGoal-v1", *arguments)
+    assert "hindsight experience replay, as the docstring of elastica_gym.envs.goal shows" in message
+
+
+def test_a_python_file_is_evaluated(tmp_path):
+    file, numbers = tmp_path / "mine.py", tmp_path / "numbers.json"
+    file.write_text(POLICY)
+    asked = "--env", FORWARD, "--episodes", 2, "--json", numbers
+    output = run("agents.evaluate", "--policy", file, *asked, "--record", tmp_path / "seen")
+    assert "mine.py" in output and list((tmp_path / "seen").glob("*.rrd"))
+    forced = json.loads(numbers.read_text())
+    run("agents.evaluate", "--policy", "zero", *asked)
+    assert forced["terms"]["effort"] < json.loads(numbers.read_text())["terms"]["effort"] == 0.0
+
+
+def test_files_that_are_no_policies(tmp_path):
+    file = tmp_path / "mine.py"
+    assert f"There is no policy file {file}" in refused("agents.evaluate", "--policy", file, "--env", FORWARD)
+    file.write_text("x = 1")
+    assert "has no function policy(observation)" in refused("agents.evaluate", "--policy", file, "--env", FORWARD)
+    assert "--policy needs --env" in refused("agents.evaluate", "--policy", file)
