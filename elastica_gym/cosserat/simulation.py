@@ -118,6 +118,8 @@ class Simulation:
     ) -> None:
         self.rods = [system for system in systems if isinstance(system, CosseratRod)]
         self.bodies = [system for system in systems if isinstance(system, RigidBodyBase)]
+        for rod in self.rods:
+            rod._rest_as_built()
         # a Model has a rod: bodies alone get one that is far from everything and feels nothing
         lowered: list[Continuum] = [_laid(rod) for rod in self.rods] or [_BYSTANDER]
         bodies: Any = [body._lowered() for body in self.bodies]

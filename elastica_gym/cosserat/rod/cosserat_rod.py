@@ -19,7 +19,7 @@ MATERIAL = (
 """Attributes that a simulation reads when it is entered, kept in one piece of memory."""
 
 TOLERANCE = 1e-8
-"""How far given positions and directors may be from what they should be"""
+"""How far given positions, by the size of the rod, and directors may be from what they should be"""
 
 
 class Field:
@@ -234,7 +234,7 @@ class CosseratRod(RodBase):
             nodes = first + base_length * tangent[:, None] * np.linspace(0.0, 1.0, n_elements + 1)
         else:
             nodes = _array("position", position, (3, n_elements + 1))
-            if np.abs(nodes[:, :1] - first).max() > TOLERANCE:
+            if np.abs(nodes[:, :1] - first).max() > TOLERANCE * (base_length + np.abs(first).max()):
                 raise ValueError(f"start must be the first node of position, {nodes[:, 0]}, not {first[:, 0]}")
         return cls._made(
             nodes, False, normal, base_radius, density, nu, youngs_modulus, poisson_ratio, nu_for_torques,
@@ -253,7 +253,8 @@ class CosseratRod(RodBase):
 
         A ring of n elements has as many nodes and Voronoi points, so ``position`` and ``rest_kappa``
         are (3, n). The first node lies along direction x normal from the centre, and the ring runs
-        towards ``direction`` from there. The other parameters are those of `straight_rod`.
+        towards ``direction`` from there. A ``rest_kappa`` or ``rest_sigma`` that is zero throughout at
+        ``finalize`` becomes that of the ring as it is then. The other parameters are those of `straight_rod`.
         """
         if n_elements < 3:
             raise ValueError(f"n_elements must be at least 3, not {n_elements}")
@@ -383,6 +384,13 @@ class CosseratRod(RodBase):
         return alpha * self.dilatation
 
     # between the rod and its simulation
+
+    def _rest_as_built(self) -> None:
+        """Let a ring without any strain at rest be at rest as it is: no ring is at rest without curvature."""
+        if self.ring_rod_flag and not self.rest_sigma.any():
+            self.rest_sigma[:] = self.sigma
+        if self.ring_rod_flag and not self.rest_kappa.any():
+            self.rest_kappa[:] = self.kappa
 
     def as_continuum(self) -> Lowered:
         """Return the rod as the physics knows it, a ring cut open."""
