@@ -1,6 +1,7 @@
 """The running simulation behind a finalized simulator: tables, memory, hooks and callbacks."""
 
 import ctypes
+import functools
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -18,6 +19,7 @@ from .rigidbody.rigid_body import RigidBodyBase
 from .rod.cosserat_rod import MATERIAL, CosseratRod, Lowered
 from .rod.description import Continuum, Rod, stable_time_step
 from .scene import Hooks, Scheme
+from .surface.plane import Plane
 
 NEVER = 2**62
 _BYSTANDER = Rod.straight(2, start=(1e6, 0.0, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=1.0,
@@ -106,6 +108,8 @@ class Simulation:
         The features of each kind, as declared.
     callbacks : Callbacks, optional
         Those of the systems.
+    names : mapping, optional
+        How messages call a system, by its identity; by its type alone unless given.
 
     Attributes
     ----------
@@ -114,8 +118,9 @@ class Simulation:
     """
 
     def __init__(
-        self, systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]], callbacks: Callbacks | None = None
-    ) -> None:
+        self, systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]], callbacks: Callbacks | None = None,
+        names: Mapping[int, str] | None = None,
+    ) -> None:  # fmt: skip
         self.rods = [system for system in systems if isinstance(system, CosseratRod)]
         self.bodies = [system for system in systems if isinstance(system, RigidBodyBase)]
         for rod in self.rods:
@@ -130,17 +135,20 @@ class Simulation:
         self._as_laid_out = self._material.copy()
         self._hooks = {name: Hook() for name in Hooks._fields}
         self.callbacks = callbacks or Callbacks()
+        self._names = names or {}
         self._constraints: list[tuple[Any, Any]] = []
         self._has_warned = self._is_judged = False
+        # the step and the place of the first motion that is not finite
+        self._broken, self._is_told = np.zeros(2, dtype=np.int64), False
 
-        builder = SceneBuilder(self.model, self.rods, self.bodies)
-        self._add_constraints(declared.get("constraints", ()), builder)
-        self._add_loads(declared.get("forcing", ()), builder)
-        self._add_joints(declared.get("connections", ()), builder)
-        self._add_contacts(declared.get("contacts", ()), builder)
-        self._add_dampers(declared.get("damping", ()), builder)
-        self.scene = builder.build()
-        self._loading = DENSE if self._hooks["loads"].calls else builder.loading
+        self._lowerings: list[Callable[[SceneBuilder], None]] = []
+        self._followed: dict[int, Array] = {}
+        self._add_constraints(declared.get("constraints", ()))
+        self._add_loads(declared.get("forcing", ()))
+        self._add_joints(declared.get("connections", ()))
+        self._add_contacts(declared.get("contacts", ()))
+        self._add_dampers(declared.get("damping", ()))
+        self._lower()
 
     # set up
 
@@ -177,54 +185,80 @@ class Simulation:
                 "plane_contact": s.body_contact[0, b],
             })  # fmt: skip
 
-    def _add_constraints(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _lower(self) -> None:
+        """Write the tables of the scene from what the built-in features and the arrays that they follow are now."""
+        builder = SceneBuilder(self.model, self.rods, self.bodies)
+        for lower in self._lowerings:
+            lower(builder)
+        before, self.scene = getattr(self, "scene", None), builder.build()
+        if before is not None:
+            # dampers are as they were at finalize, and what has been listed of contact serves on
+            self.scene = self.scene._replace(rod_contacts=before.rod_contacts, decay=before.decay, drag=before.drag)
+        self._loading = DENSE if self._hooks["loads"].calls else builder.loading
+        self._as_lowered = self._values()
+
+    def _follow(self, *features: Any) -> None:
+        """Note the arrays that features hold, which their caller may change between two entries of compiled code."""
+        for feature in features:
+            arrays = {id(value): value for value in vars(feature).values() if isinstance(value, np.ndarray)}
+            self._followed.update(arrays)
+
+    def _values(self) -> bytes:
+        """Return what is in the arrays that are followed."""
+        return b"".join(array.tobytes() for array in self._followed.values())
+
+    def _add_constraints(self, declared: Sequence[Declaration]) -> None:
+        """Add constraints so that the last one wins: after a user's own on a system, built-in ones are called too."""
+        called: set[int] = set()
         for declaration in declared:
             (system,) = declaration.systems
             constraint = _make_constraint(declaration, system)
             self._constraints.append((constraint, system))
-            if is_lowered("constraints", declaration):
-                constraint.lower(builder)
+            if is_lowered("constraints", declaration) and id(system) not in called:
+                self._lowerings.append(constraint.lower)
             else:
+                called.add(id(system))
                 self._hook("values", constraint.constrain_values, system)
                 self._hook("rates", constraint.constrain_rates, system)
 
-    def _add_loads(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _add_loads(self, declared: Sequence[Declaration]) -> None:
         for declaration in declared:
             load, (system,) = declaration.make(), declaration.systems
             if is_lowered("forcing", declaration):
-                load.lower(builder, system)
+                self._follow(load)
+                self._lowerings.append(functools.partial(_lower_load, load, system))
             else:
                 self._hook("loads", load.apply_forces, system)
                 self._hook("loads", load.apply_torques, system)
 
-    def _add_joints(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _add_joints(self, declared: Sequence[Declaration]) -> None:
         for declaration in declared:
             joint, (one, two), (first, second) = declaration.make(), declaration.systems, declaration.indices
             if is_lowered("connections", declaration):
-                # contact as a joint, as in 0.2.x, has no indices
-                for i, j in zip(np.ravel(first), np.ravel(second), strict=True) if np.size(first) else ((0, 0),):
-                    joint.lower(builder, (one, int(i), two, int(j)))
+                self._follow(joint)
+                self._lowerings.append(functools.partial(lower_joint, joint, one, first, two, second))
             else:
                 self._hook("loads", joint.apply_forces, one, first, two, second)
                 self._hook("loads", joint.apply_torques, one, first, two, second)
 
-    def _add_contacts(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _add_contacts(self, declared: Sequence[Declaration]) -> None:
         for declaration in declared:
             contact, (one, two) = declaration.make(), declaration.systems
             contact.require_systems(one, two)
             if is_lowered("contacts", declaration):
-                contact.lower(builder, one, two)
+                self._follow(contact, *(each for each in (one, two) if isinstance(each, Plane)))
+                self._lowerings.append(functools.partial(_lower_contact, contact, one, two))
             else:
                 self._hook("loads", contact.apply_contact, one, two)
 
-    def _add_dampers(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _add_dampers(self, declared: Sequence[Declaration]) -> None:
         for declaration in declared:
             (system,) = declaration.systems
             damper = declaration.make(_system=system)
             if isinstance(damper, AnalyticalLinearDamper) and damper.time_step is not None:
                 self._warn_of(damper.time_step, [system] if isinstance(system, CosseratRod) else [])
             if is_lowered("damping", declaration):
-                damper.lower(builder)
+                self._lowerings.append(damper.lower)
             else:
                 self._hook("damping", damper.dampen_rates, system)
 
@@ -265,17 +299,41 @@ class Simulation:
     def advance(self, scheme: Scheme, dt: float, n_steps: int, time: float) -> float:
         """Take steps from a time on, without callbacks, and return the time after [s]."""
         self.require_time_step(dt)
-        if not np.array_equal(self._material, self._as_laid_out):
-            for rod, first in zip(self.rods, self.model.first_slot, strict=True):
-                lay_out(self.model._asdict(), _laid(rod), int(first))
-            self._as_laid_out[:] = self._material
-        self.state.time[0] = time
+        if self.read_material() or self._values() != self._as_lowered:
+            self._lower()
+        for body in self.bodies:
+            body._time_step = dt
+        self._time_step, self.state.time[0] = dt, time
         hooks = Hooks(**{name: hook.address for name, hook in self._hooks.items()})
         stopped = simulate(self.model, self.scene, self.state, self.control, hooks, scheme, dt, n_steps,
-                           DENSE if self._has_loads else self._loading)  # fmt: skip
+                           DENSE if self._has_loads else self._loading, self._broken)  # fmt: skip
         if stopped:
+            self.warn_of_divergence()
             self._raise_error()
         return float(self.state.time[0])
+
+    def read_material(self) -> bool:
+        """Lay the rods' material out again if it has changed, and return whether it has."""
+        if np.array_equal(self._material, self._as_laid_out):
+            return False
+        for rod, first in zip(self.rods, self.model.first_slot, strict=True):
+            lay_out(self.model._asdict(), _laid(rod), int(first))
+        self._as_laid_out[:] = self._material
+        return True
+
+    def warn_of_divergence(self) -> None:
+        """Warn, once, if motion is not finite: of what since which step."""
+        step, place = self._broken.tolist()
+        if step == 0 or self._is_told:
+            return
+        self._is_told = True
+        rod = int(np.searchsorted(self.model.first_slot, place, side="right")) - 1
+        name = self._name(self.bodies[-1 - place] if place < 0 else self.rods[rod])
+        warnings.warn(f"velocities of {name} are infinite or NaN from step {step} on; the time step of "
+                      f"{self._time_step:.4g} s may be too large", RuntimeWarning, stacklevel=3)  # fmt: skip
+
+    def _name(self, system: Any) -> str:
+        return self._names.get(id(system), type(system).__name__)
 
     @property
     def _has_loads(self) -> bool:
@@ -314,6 +372,24 @@ class Simulation:
 def is_lowered(kind: str, declaration: Declaration) -> bool:
     """Return whether a feature of a kind is part of the compiled step, rather than called by it."""
     return declaration.cls is not None and is_built_in(declaration.cls, CALLED[kind])
+
+
+def lower_joint(joint: Any, one: Any, first: Any, two: Any, second: Any, builder: SceneBuilder) -> None:
+    """Write the rows of a joint, one for each pair of indices."""
+    if np.size(first) != np.size(second):
+        raise ValueError(f"first_connect_idx and second_connect_idx of {type(joint).__name__} must be as many, "
+                         f"not {np.size(first)} and {np.size(second)}")  # fmt: skip
+    # contact as a joint, as in 0.2.x, has no indices
+    for i, j in zip(np.ravel(first), np.ravel(second), strict=True) if np.size(first) else ((0, 0),):
+        joint.lower(builder, (one, int(i), two, int(j)))
+
+
+def _lower_load(load: Any, system: Any, builder: SceneBuilder) -> None:
+    load.lower(builder, system)
+
+
+def _lower_contact(contact: Any, one: Any, two: Any, builder: SceneBuilder) -> None:
+    contact.lower(builder, one, two)
 
 
 def _laid(rod: CosseratRod) -> Lowered:

@@ -148,8 +148,7 @@ class Rod:
         **material
             The remaining attributes of `Rod`.
         """
-        if n_elements < 2:
-            raise ValueError(f"n_elements must be at least 2, not {n_elements}")
+        n_elements = as_count("n_elements", n_elements, 2)
         require_positive("length", length)
         tangent = _unit("direction", direction)
         nodes = _array("start", start, (3,))[:, None] + length * tangent[:, None] * np.linspace(0, 1, n_elements + 1)
@@ -291,14 +290,78 @@ def require_stable(rods: Sequence[Continuum], time_step: float) -> None:
         raise ValueError(f"the time step must be below {bound:.4g} s for these rods to be stable, not {time_step:g} s")
 
 
+def as_number(name: str, value: ArrayLike) -> float:
+    """Return a finite number as a float.
+
+    Raises
+    ------
+    TypeError
+        If it is not a number.
+    ValueError
+        If it is infinite or NaN.
+    """
+    _require_number(name, value)
+    number = float(np.asarray(value, dtype=np.float64).reshape(()))
+    if not np.isfinite(number):
+        raise ValueError(f"{name} must be a finite number, not {number}")
+    return number
+
+
+def as_numbers(name: str, value: ArrayLike) -> Array:
+    """Return an array of floats, or raise TypeError if ``value`` is none of numbers."""
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} must be numbers, not {value!r}") from None
+
+
+def three(name: str, value: ArrayLike) -> Array:
+    """Return three finite numbers, (3,): of a given array its own memory, so that who changes it is followed.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If they are none.
+    """
+    numbers = as_numbers(name, value)
+    if numbers.size != 3 or not np.isfinite(numbers).all():
+        raise ValueError(f"{name} must be three finite numbers, not {numbers.tolist()}")
+    return np.asarray(value).reshape(3)
+
+
+def as_count(name: str, value: object, least: int) -> int:
+    """Return a whole number that is not below ``least`` as an int.
+
+    Raises
+    ------
+    TypeError
+        If it is not a whole number by its type.
+    ValueError
+        If it is too small.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise TypeError(f"{name} must be a whole number, not {value!r}")
+    if value < least:
+        raise ValueError(f"{name} must be at least {least}, not {value}")
+    return int(value)
+
+
+def _require_number(name: str, value: Any) -> None:
+    given = np.asarray(value)
+    if given.size != 1 or given.dtype.kind not in "iuf":
+        raise TypeError(f"{name} must be a number, not {value!r}")
+
+
 def require_positive(name: str, value: float) -> None:
-    """Raise ValueError unless ``value`` is finite and above zero."""
+    """Raise ValueError unless ``value`` is finite and above zero, and TypeError unless it is a number."""
+    _require_number(name, value)
     if not (np.isfinite(value) and value > 0.0):
         raise ValueError(f"{name} must be a positive number, not {value}")
 
 
 def require_not_negative(name: str, value: float) -> None:
-    """Raise ValueError unless ``value`` is finite and not below zero."""
+    """Raise ValueError unless ``value`` is finite and not below zero, and TypeError unless it is a number."""
+    _require_number(name, value)
     if not (np.isfinite(value) and value >= 0.0):
         raise ValueError(f"{name} must be zero or a positive number, not {value}")
 
@@ -312,7 +375,7 @@ def require_finite(name: str, values: ArrayLike, size: int) -> None:
 
 def _array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> Array:
     """Return a contiguous copy of ``value``, of the given shape (None: any size) and finite."""
-    array = np.array(value, dtype=np.float64, order="C")
+    array = np.array(as_numbers(name, value), order="C")
     if array.ndim != len(shape) or any(b is not None and a != b for a, b in zip(array.shape, shape, strict=True)):
         wanted = str(tuple("any" if size is None else size for size in shape)).replace("'", "")
         raise ValueError(f"{name} must have shape {wanted}, not {array.shape}")
