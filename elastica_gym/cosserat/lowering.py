@@ -277,12 +277,12 @@ class SceneBuilder:
 
     @property
     def loading(self) -> int:
-        """Where anything acts from outside, but planes: UNLOADED, SPARSE or DENSE."""
+        """Where anything acts from outside, but planes on rods: UNLOADED, SPARSE or DENSE."""
         rows = (self._waves, self._flows, self._tensions, self._sides, self._rod_contacts, self._body_contacts)
         if any(map(len, rows)) or self._dead_force.any() or self._dead_torque.any():
             return DENSE
-        is_loaded = self._point_loads or self._joints or self._body_force.any() or self._body_torque.any()
-        return SPARSE if is_loaded else UNLOADED
+        bodies = self._body_planes or self._body_force.any() or self._body_torque.any()
+        return SPARSE if self._point_loads or self._joints or bodies else UNLOADED
 
     def build(self) -> Scene:
         """Return the tables."""

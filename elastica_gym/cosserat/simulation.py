@@ -142,7 +142,7 @@ class Simulation:
         self._broken, self._is_told = np.zeros(2, dtype=np.int64), False
 
         self._lowerings: list[Callable[[SceneBuilder], None]] = []
-        self._followed: dict[int, Array] = {}
+        self._followed: dict[int, tuple[Any, list[str]]] = {}
         self._add_constraints(declared.get("constraints", ()))
         self._add_loads(declared.get("forcing", ()))
         self._add_joints(declared.get("connections", ()))
@@ -200,12 +200,13 @@ class Simulation:
     def _follow(self, *features: Any) -> None:
         """Note the arrays that features hold, which their caller may change between two entries of compiled code."""
         for feature in features:
-            arrays = {id(value): value for value in vars(feature).values() if isinstance(value, np.ndarray)}
-            self._followed.update(arrays)
+            names = [name for name, value in vars(feature).items() if isinstance(value, np.ndarray)]
+            self._followed[id(feature)] = feature, names
 
     def _values(self) -> bytes:
         """Return what is in the arrays that are followed."""
-        return b"".join(array.tobytes() for array in self._followed.values())
+        return b"".join(np.asarray(getattr(feature, name)).tobytes()
+                        for feature, names in self._followed.values() for name in names)  # fmt: skip
 
     def _add_constraints(self, declared: Sequence[Declaration]) -> None:
         """Add constraints so that the last one wins: after a user's own on a system, built-in ones are called too."""

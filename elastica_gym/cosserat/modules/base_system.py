@@ -181,6 +181,16 @@ class BaseSystemCollection(MutableSequence):
         """Tell callbacks that the simulation is over."""
         self.simulation.callbacks.close()
 
+    def __getstate__(self) -> dict[str, Any]:
+        if self._simulation is not None:
+            raise TypeError("a finalized simulator cannot be copied or pickled, since its systems share memory with "
+                            "compiled code; use save_state, and load_state on a new simulator")
+        return vars(self)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._find_places()
+
     def _require_open(self, action: str) -> None:
         if self._simulation is not None:
             raise RuntimeError(f"cannot {action}: the simulator is finalized")

@@ -5,7 +5,6 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..model import Array
 from ..rod.description import three
 
 UNIT = 1e-12
@@ -33,25 +32,9 @@ class Plane:
     REQUISITE_MODULES: ClassVar[list[type]] = []
 
     def __init__(self, plane_origin: ArrayLike, plane_normal: ArrayLike) -> None:
-        self._origin = three("plane_origin", plane_origin).reshape(3, 1)
+        self.origin = three("plane_origin", plane_origin).reshape(3, 1)
         normal = three("plane_normal", plane_normal)
         size = float(np.linalg.norm(normal))
         if size == 0.0:
             raise ValueError("plane_normal must not be zero")
-        self._normal = normal if abs(size - 1.0) < UNIT else normal / size
-
-    @property
-    def origin(self) -> Array:  # noqa: D102
-        return self._origin
-
-    @origin.setter
-    def origin(self, value: ArrayLike) -> None:
-        self._origin[:] = three("origin", value).reshape(3, 1)
-
-    @property
-    def normal(self) -> Array:  # noqa: D102
-        return self._normal
-
-    @normal.setter
-    def normal(self, value: ArrayLike) -> None:
-        self._normal[:] = three("normal", value)
+        self.normal = normal if abs(size - 1.0) < UNIT else normal / size
