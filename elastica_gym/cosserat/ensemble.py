@@ -13,6 +13,7 @@ from .rigidbody.rigid_body import RigidBodyBase
 from .rod.cosserat_rod import CosseratRod
 from .scene import Scheme
 from .simulation import Callbacks, Simulation, is_lowered
+from .stability import Limit
 from .threads import available_cpus, side_by_side
 
 WORTHWHILE = 100_000
@@ -83,6 +84,10 @@ class Ensemble:
         calls = [functools.partial(part.advance, scheme, dt, n_steps, time) for part in self.parts]
         is_long = n_steps * self._size >= WORTHWHILE
         return (side_by_side(calls) if is_long else [call() for call in calls])[0]
+
+    def limit(self) -> Limit:
+        """Return the largest stable time step, and what it is that limits it."""
+        return min(part.limit() for part in self.parts)
 
     def warn_of_divergence(self) -> None:
         """Warn, once for each part, if motion is not finite: of what since which step."""

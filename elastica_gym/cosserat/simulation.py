@@ -17,8 +17,9 @@ from .model import Array
 from .modules.declaration import Declaration
 from .rigidbody.rigid_body import RigidBodyBase
 from .rod.cosserat_rod import MATERIAL, CosseratRod, Lowered
-from .rod.description import Continuum, Rod, stable_time_step
+from .rod.description import Continuum, Rod, as_indices, stable_time_step
 from .scene import Hooks, Scheme
+from .stability import Limit, limits
 from .surface.plane import Plane
 
 NEVER = 2**62
@@ -138,9 +139,10 @@ class Simulation:
         self._names = names or {}
         self._constraints: list[tuple[Any, Any]] = []
         self._has_warned = self._is_judged = False
-        # the step and the place of the first motion that is not finite
-        self._broken, self._is_told = np.zeros(2, dtype=np.int64), False
+        # the step and the place of the first motion that is found not to be finite, and the last step when all was
+        self._broken, self._is_told = np.zeros(3, dtype=np.int64), False
 
+        self._announced: set[float] = set()
         self._lowerings: list[Callable[[SceneBuilder], None]] = []
         self._followed: dict[int, tuple[Any, list[str]]] = {}
         self._add_constraints(declared.get("constraints", ()))
@@ -149,6 +151,8 @@ class Simulation:
         self._add_contacts(declared.get("contacts", ()))
         self._add_dampers(declared.get("damping", ()))
         self._lower()
+        for dt in self._announced:
+            self._warn_of(dt)
 
     # set up
 
@@ -257,7 +261,7 @@ class Simulation:
             (system,) = declaration.systems
             damper = declaration.make(_system=system)
             if isinstance(damper, AnalyticalLinearDamper) and damper.time_step is not None:
-                self._warn_of(damper.time_step, [system] if isinstance(system, CosseratRod) else [])
+                self._announced.add(damper.time_step)
             if is_lowered("damping", declaration):
                 self._lowerings.append(damper.lower)
             else:
@@ -295,7 +299,7 @@ class Simulation:
 
     @steps.setter
     def steps(self, count: int) -> None:
-        self.state.step[0] = count
+        self.state.step[0] = self._broken[2] = count
 
     def advance(self, scheme: Scheme, dt: float, n_steps: int, time: float) -> float:
         """Take steps from a time on, without callbacks, and return the time after [s]."""
@@ -323,14 +327,15 @@ class Simulation:
         return True
 
     def warn_of_divergence(self) -> None:
-        """Warn, once, if motion is not finite: of what since which step."""
-        step, place = self._broken.tolist()
+        """Warn, once, if motion is not finite: of what since which step, within those between two looks."""
+        step, place, sound = self._broken.tolist()
         if step == 0 or self._is_told:
             return
         self._is_told = True
         rod = int(np.searchsorted(self.model.first_slot, place, side="right")) - 1
         name = self._name(self.bodies[-1 - place] if place < 0 else self.rods[rod])
-        warnings.warn(f"velocities of {name} are infinite or NaN from step {step} on; the time step of "
+        since = f"step {step}" if step == sound + 1 else f"a step from {sound + 1} to {step}"
+        warnings.warn(f"velocities of {name} are infinite or NaN since {since}; the time step of "
                       f"{self._time_step:.4g} s may be too large", RuntimeWarning, stacklevel=3)  # fmt: skip
 
     def _name(self, system: Any) -> str:
@@ -359,14 +364,21 @@ class Simulation:
             raise ValueError(f"the time step must be a positive number, not {dt}")
         if not self._is_judged:
             self._is_judged = True
-            self._warn_of(dt, self.rods)
+            self._warn_of(dt)
 
-    def _warn_of(self, dt: float, rods: Sequence[CosseratRod]) -> None:
-        """Warn of a time step that is too large for some rods, once."""
-        bound = min((stable_time_step(rod) for rod in rods), default=math.inf)
+    def limit(self) -> Limit:
+        """Return the largest stable time step, and what it is that limits it."""
+        rods, bodies = ([self._name(system) for system in systems] for systems in (self.rods, self.bodies))
+        found = limits(self.model, self.scene, rods, bodies)
+        found += [Limit(stable_time_step(rod), f"{name} at rest") for rod, name in zip(self.rods, rods, strict=True)]
+        return min(found, default=Limit(math.inf, "nothing"))
+
+    def _warn_of(self, dt: float) -> None:
+        """Warn of a time step that is too large for what is declared, once."""
+        bound, culprit = self.limit()
         if dt > bound and not self._has_warned:
             self._has_warned = True
-            warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the stable one of a rod at rest",
+            warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the largest stable one of {culprit}",
                           RuntimeWarning, stacklevel=5)  # fmt: skip
 
 
@@ -402,7 +414,7 @@ def _make_constraint(declaration: Declaration, system: Any) -> Any:
     """Make a constraint from what is at its indices now, its own arguments, and the system."""
     kwargs = dict(declaration.kwargs)
     indices = {name: kwargs.pop(name, ()) for name in ("constrained_position_idx", "constrained_director_idx")}
-    positions, directors = (np.ravel(index).astype(np.int64) for index in indices.values())
+    positions, directors = (as_indices(name, index) for name, index in indices.items())
     for name, index, count in (("constrained_position_idx", positions, system.n_nodes),
                                ("constrained_director_idx", directors, system.n_elems)):  # fmt: skip
         if ((index < -count) | (index >= count)).any():
@@ -411,7 +423,12 @@ def _make_constraint(declaration: Declaration, system: Any) -> Any:
     fixed += [system.director_collection[..., i].copy() for i in directors]
     more = {"_system": system, **indices} if declaration.cls is None or declaration.accepts("_system") else {}
     declaration.kwargs = kwargs
-    constraint = declaration.make(*fixed, **more)
+    try:
+        constraint = declaration.make(*fixed, **more)
+    except TypeError as error:
+        raise TypeError(f"{error}; its first arguments are the positions at constrained_position_idx "
+                        f"{positions.tolist()} and the directors at constrained_director_idx {directors.tolist()}"
+                        ) from error  # fmt: skip
     constraint._set_up(system, *indices.values())
     return constraint
 

@@ -85,11 +85,16 @@ def test_a_run_that_breaks_says_where_and_when_it_did_and_once():
     sim.finalize()
     integrate(sim, 100)
     wild.velocity_collection[1, 3] = np.nan
-    with pytest.warns(RuntimeWarning, match="CosseratRod 2 are infinite or NaN from step 101 on") as caught:
+    with pytest.warns(RuntimeWarning, match="CosseratRod 2 are infinite or NaN since step 101;") as caught:
         time = integrate(sim, 100, 100 * DT)
         ea.PositionVerlet().step(sim, time, DT)
     assert len(caught) == 1
     assert np.isfinite(calm.position_collection).all()
+
+
+class EveryStep(ea.CallBackBaseClass):
+    def make_callback(self, system, time, current_step):
+        pass
 
 
 class Kick(ea.NoForces):
@@ -100,12 +105,19 @@ class Kick(ea.NoForces):
             system.external_forces[1, -1] = np.inf
 
 
-def test_the_first_step_is_told_exactly_within_an_entry():
+def test_the_first_step_is_told_within_eight_and_exactly_of_single_steps():
     for number, name in enumerate(("CosseratRod 0", "Sphere 1")):
         sim = simulator(make_rod(), ea.Sphere(np.zeros(3), 0.05, 500.0))
         sim.add_forcing_to(sim[number]).using(Kick)
         sim.finalize()
-        with pytest.warns(RuntimeWarning, match=f"{name} are infinite or NaN from step 38 on"):
+        with pytest.warns(RuntimeWarning, match=f"{name} are infinite or NaN since a step from 33 to 40;"):
+            sim.simulation.advance(ea.PositionVerlet().scheme, DT, 200, 0.0)
+            sim.simulation.warn_of_divergence()
+        sim = simulator(make_rod(), ea.Sphere(np.zeros(3), 0.05, 500.0))
+        sim.add_forcing_to(sim[number]).using(Kick)
+        sim.collect_diagnostics(sim[0]).using(EveryStep)
+        sim.finalize()
+        with pytest.warns(RuntimeWarning, match=f"{name} are infinite or NaN since step 38;"):
             integrate(sim, 200)
 
 

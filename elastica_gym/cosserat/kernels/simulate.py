@@ -29,6 +29,9 @@ from .watch import find_broken
 # where there are loads from outside: nowhere, in a few slots, everywhere
 UNLOADED, SPARSE, DENSE = 0, 1, 2
 
+# steps between two looks at whether motion is finite: at each, one would take 2 to 6 % of the step
+WATCH_EVERY = 8
+
 
 @inner
 def ends(span):
@@ -194,11 +197,13 @@ def prepare(scene, state, dt):
 
 @inner
 def watch(state, n, broken):
-    """Note the step and the place of the first motion that is not finite, once."""
+    """Note the step and the place of the first motion that is found not to be finite, and the last step when it was."""
     if broken[0] == 0:
         place = find_broken(FIRST, n, state.v[0], state.w[0], state.body_v[0], state.body_w[0])
         if place != 0:
             broken[0], broken[1] = state.step[0] + 1, place
+        else:
+            broken[2] = state.step[0] + 1
 
 
 @entry
@@ -209,7 +214,7 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading, 
     time: what comes out does not depend, to the last bit, on where a run is cut. External loads are cleared between
     stages, but neither before the first nor after the last, so that those set from outside act once, and callbacks
     see them. ``loading`` is one of UNLOADED, SPARSE (only where ``scene.touched`` says) and DENSE. ``broken`` gets the
-    number of the first step after which motion is not finite, and where; nothing if its first entry is not zero.
+    number of the step after which motion is found not to be finite, the place, and the last step known to be sound.
     """
     n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
     prepare(scene, state, dt)
@@ -268,7 +273,8 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading, 
             if stage == n_kicks - 1:
                 if damp(model, scene, state, hooks, n, dt) != 0:
                     return 1
-                watch(state, n, broken)
+                if step == n_steps - 1 or (state.step[0] + 1) % WATCH_EVERY == 0:
+                    watch(state, n, broken)
     return 0
 
 

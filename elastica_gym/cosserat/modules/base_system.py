@@ -165,6 +165,16 @@ class BaseSystemCollection(MutableSequence):
             raise RuntimeError("the simulator is not finalized; call finalize() before it is run")
         return self._simulation
 
+    def stable_time_step(self) -> float:
+        """Return the largest time step of position Verlet that all rods and all that is declared allow [s].
+
+        Raises
+        ------
+        RuntimeError
+            Before ``finalize``.
+        """
+        return self.simulation.limit().time_step
+
     def constrain_values(self, time: float) -> None:
         """Apply the constraints of positions and directors."""
         self.simulation.constrain_values(time)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..model import Array
 
@@ -248,14 +248,22 @@ class Rod:
         return 1.0 / self.inertia
 
 
+class Limited(Protocol):
+    """A simulator, which knows its largest stable time step."""
+
+    def stable_time_step(self) -> float: ...  # noqa: D102
+
+
 class Convertible(Protocol):
     """A rod of other names that can be described as a `Continuum`."""
 
     def as_continuum(self) -> Continuum: ...  # noqa: D102
 
 
-def stable_time_step(rod: Continuum | Convertible) -> float:
-    """Return the largest time step of position Verlet that is stable for a rod at rest [s].
+def stable_time_step(rod: "Continuum | Convertible | Limited") -> float:
+    """Return the largest time step of position Verlet that is stable for a rod at rest, or a finalized simulator [s].
+
+    That of a simulator is the smallest of its rods and of each joint, contact, plane and drag by itself.
 
     The highest frequency of a uniform rod is that of its shortest wave, in which neighbouring nodes
     and elements move oppositely: stretch, twist, and bending coupled to shear. Measured for r/l from
@@ -264,8 +272,10 @@ def stable_time_step(rod: Continuum | Convertible) -> float:
 
     Parameters
     ----------
-    rod : Rod or CosseratRod
+    rod : Rod, CosseratRod or BaseSystemCollection
     """
+    if hasattr(rod, "stable_time_step"):
+        return rod.stable_time_step()
     if hasattr(rod, "as_continuum"):
         rod = rod.as_continuum()
     l, S, J = rod.rest_length, rod.shear_stiffness, rod.inertia / rod.rest_length  # noqa: E741
@@ -344,6 +354,14 @@ def as_count(name: str, value: object, least: int) -> int:
     if value < least:
         raise ValueError(f"{name} must be at least {least}, not {value}")
     return int(value)
+
+
+def as_indices(name: str, value: Any) -> NDArray[np.int64]:
+    """Return an index or several as an array, or raise TypeError if they are no whole numbers."""
+    given = np.ravel(np.asarray(value))
+    if given.size and given.dtype.kind not in "iu":
+        raise TypeError(f"{name} must be whole numbers, not {value!r}")
+    return given.astype(np.int64)
 
 
 def _require_number(name: str, value: Any) -> None:
