@@ -91,6 +91,10 @@ class _Masses:
         """Return 1/m of a node or a body [1/kg]."""
         return float(self.model.inv_mass[place] if place >= 0 else 1.0 / self.model.cylinders.mass[-1 - place])
 
+    def total(self, elements: slice) -> float:
+        """Return the mass of a rod with these elements [kg]."""
+        return float(np.sum(self.model.mass[elements.start : elements.stop + 1]))
+
     def turn(self, place: int) -> Array:
         """Return the diagonal of 1/J of an element or a body [1/(kg m^2)], (3,)."""
         bodies = self.model.cylinders.inertia
@@ -116,7 +120,7 @@ def _viscosity(masses: _Masses) -> Iterator[Limit]:
         stiff = 4.0 * (bend + np.outer([0.25, 0.25, 0.0], np.ones_like(length)) * m.shear[:, here])
         inertia = m.inertia[:, here] / length
         spin = largest_step(stiff / inertia, nu[1] / inertia)
-        motion = largest_step(0.0, nu[0] * length * 2.0 * masses.element[here])
+        motion = largest_step(0.0, np.sum(nu[0] * length) / masses.total(here))
         yield Limit(min(spin, motion), f"the viscosity of {masses.rod_names[number]}")
 
 
@@ -179,10 +183,11 @@ def _joints(masses: _Masses, joints: Joints) -> Iterator[Limit]:
             total[0], total[1], total[2] = total[0] + k, total[1] + nu, total[2] + 1
         kt, nut, hinge = joints.turn_stiffness[j], joints.turn_damping[j], joints.hinge_stiffness[j]
         if kt > 0.0 or nut > 0.0 or hinge > 0.0:
-            a, b = (masses.turn(place) for place in joints.element[j].tolist())
-            gives = max(a.max() + b.min(), a.min() + b.max())
+            a, b = (np.sort(masses.turn(place)) for place in joints.element[j].tolist())
+            # however they are turned, the planes of their two lightest axes meet in a line
+            gives = max(a[1] + b[1], a[2] + b[0], a[0] + b[2])
             yield Limit(largest_step(kt * gives, nut * gives), f"the torque of {culprit}")
-            yield Limit(largest_step(hinge * (a.min() + b.min()), 0.0), f"the torque of {culprit}")
+            yield Limit(largest_step(hinge * (a[0] + b[0]), 0.0), f"the torque of {culprit}")
     for place, (k, nu, count) in at.items():
         if count > 1:
             inverse = masses.node(place)
@@ -209,8 +214,8 @@ def _flows(masses: _Masses, model: Model, flows: Flows) -> Iterator[Limit]:
         here = slice(first, last)
         length = model.rest_length[here]
         slender = np.log(length.sum() / (model.volume_root[here] / np.sqrt(length)))
-        rates = 4.0 * np.pi * viscosity * length / slender * masses.element[here] * 2.0
-        yield Limit(largest_step(0.0, rates), f"the drag of the fluid on {masses.name(first)}")
+        drag = 4.0 * np.pi * viscosity * np.sum(length / slender)
+        yield Limit(largest_step(0.0, drag / masses.total(here)), f"the drag of the fluid on {masses.name(first)}")
 
 
 def require_stable_model(model: Model, time_step: float) -> None:
