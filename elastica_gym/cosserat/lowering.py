@@ -44,8 +44,8 @@ STRAY = 0.2
 def is_built_in(cls: type, methods: Sequence[str]) -> bool:
     """Return whether features of a class can be lowered: no subclass has overridden what it does.
 
-    A user's subclass is called even if it has not: it is there to be changed during a run. Only what exists in
-    the compiled step alone cannot be.
+    A user's subclass is called even if it has not: it is there to be changed during a run. What has no implementation
+    but the compiled one is lowered all the same.
     """
     if not (cls.__module__.startswith(str(__package__)) or getattr(cls, "IS_COMPILED", False)):
         return False

@@ -256,7 +256,7 @@ def test_a_subclass_may_be_changed_during_a_run():
 
 
 class Softer(ea.RodSelfContact):
-    """Overrides nothing, and cannot be called."""
+    """Overrides nothing of what has no implementation but the compiled one."""
 
 
 def test_a_subclass_of_what_is_compiled_is_what_it_is_derived_from():
