@@ -139,7 +139,7 @@ def plane_table(planes: Sequence[Plane]) -> Planes:
     return Planes(
         origin=column("origin", 3), normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
         stiffness=column("stiffness", 1), damping=column("damping", 1),
-        surface_tolerance=column("surface_tolerance", 1), slip_tolerance=column("slip_tolerance", 1),
+        surface_tolerance=column("reach", 2), slip_tolerance=column("slip_tolerance", 1),
         kinetic_friction=column("kinetic_friction", 3), static_friction=column("static_friction", 3),
     )  # fmt: skip
 

@@ -2,13 +2,14 @@
 
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from . import surroundings
-from .interaction import SURFACE_TOLERANCE, _triple
+from .by_hand import act
+from .interaction import _triple, friction_of
 from .lowering import SceneBuilder
 from .rigidbody import Cylinder, Sphere
+from .rod.description import as_number, three
 from .rod.rod_base import RodBase
 from .surface.plane import Plane
 
@@ -40,15 +41,14 @@ class NoContact:
 
 
 class _Compiled(NoContact):
-    """Contact that exists in the compiled step alone."""
+    """Contact whose only implementation is the compiled one."""
 
     IS_COMPILED = True
 
     def apply_contact(self, system_one: Any, system_two: Any, time: float = 0.0) -> None:
-        """Refuse: there is no other implementation than the compiled one."""
-        raise NotImplementedError(
-            f"{type(self).__name__} acts inside the compiled step; it cannot be called by a subclass"
-        )
+        """Add forces and torques, as the compiled step does."""
+        self.require_systems(system_one, system_two)
+        act(self.lower, system_one, system_two)
 
 
 class _Press(_Compiled):
@@ -63,7 +63,7 @@ class _Press(_Compiled):
     """
 
     def __init__(self, k: float, nu: float) -> None:
-        self.k, self.nu = float(k), float(nu)
+        self.k, self.nu = as_number("k", k), as_number("nu", nu)
 
 
 class RodRodContact(_Press):
@@ -126,9 +126,9 @@ class _RodOnBody(_Compiled):
     def __init__(
         self, k: float, nu: float, velocity_damping_coefficient: float = 0.0, friction_coefficient: float = 0.0
     ) -> None:
-        self.k, self.nu = float(k), float(nu)
-        self.velocity_damping_coefficient = float(velocity_damping_coefficient)
-        self.friction_coefficient = float(friction_coefficient)
+        self.k, self.nu = as_number("k", k), as_number("nu", nu)
+        self.velocity_damping_coefficient = as_number("velocity_damping_coefficient", velocity_damping_coefficient)
+        self.friction_coefficient = as_number("friction_coefficient", friction_coefficient)
 
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write a pair."""
@@ -160,7 +160,7 @@ class CylinderPlaneContact(_Press):
     nu : float
         Damping force per velocity along the normal at each point of contact [N s/m].
     friction_coefficient : float
-        mu
+        mu; by hand, outside of a run, there is no friction, since what ends slip depends on the time step.
     """
 
     allowed_systems_one = (Cylinder,)
@@ -168,7 +168,7 @@ class CylinderPlaneContact(_Press):
 
     def __init__(self, k: float, nu: float, friction_coefficient: float = 0.0) -> None:
         super().__init__(k, nu)
-        self.friction_coefficient = float(friction_coefficient)
+        self.friction_coefficient = as_number("friction_coefficient", friction_coefficient)
 
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write a plane."""
@@ -188,12 +188,13 @@ class _RodOnPlane(_Compiled):
 
     k: float
     nu: float
+    surface_tol: float | None
 
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write a plane."""
         builder.add_plane(system_one, surroundings.Plane(
             origin=_triple(system_two.origin), normal=_triple(system_two.normal), stiffness=self.k, damping=self.nu,
-            surface_tolerance=SURFACE_TOLERANCE, **self._friction(),
+            surface_tolerance=self.surface_tol, **self._friction(),
         ))  # fmt: skip
 
 
@@ -206,10 +207,12 @@ class RodPlaneContact(_RodOnPlane):
         Restoring force per penetration [N/m].
     nu : float
         Damping force per velocity along the normal [N s/m].
+    surface_tol : float, optional
+        Gap below which an element is in contact [m]; 1e-4 m unless given, but at most a twentieth of its radius.
     """
 
-    def __init__(self, k: float, nu: float) -> None:
-        self.k, self.nu = float(k), float(nu)
+    def __init__(self, k: float, nu: float, surface_tol: float | None = None) -> None:
+        self.k, self.nu, self.surface_tol = as_number("k", k), as_number("nu", nu), surface_tol
 
 
 class RodPlaneContactWithAnisotropicFriction(_RodOnPlane):
@@ -217,7 +220,7 @@ class RodPlaneContactWithAnisotropicFriction(_RodOnPlane):
 
     Parameters
     ----------
-    k, nu : float
+    k, nu, surface_tol : float
         As for `RodPlaneContact`.
     slip_velocity_tol : float
         Slip velocity up to which friction is static; from twice of it on it is kinetic [m/s].
@@ -226,11 +229,13 @@ class RodPlaneContactWithAnisotropicFriction(_RodOnPlane):
     """
 
     def __init__(
-        self, k: float, nu: float, slip_velocity_tol: float, static_mu_array: ArrayLike, kinetic_mu_array: ArrayLike
-    ) -> None:
-        self.k, self.nu, self.slip_velocity_tol = float(k), float(nu), float(slip_velocity_tol)
-        self.static_mu_array, self.kinetic_mu_array = np.array(static_mu_array), np.array(kinetic_mu_array)
+        self, k: float, nu: float, slip_velocity_tol: float, static_mu_array: ArrayLike, kinetic_mu_array: ArrayLike,
+        surface_tol: float | None = None,
+    ) -> None:  # fmt: skip
+        self.k, self.nu, self.surface_tol = as_number("k", k), as_number("nu", nu), surface_tol
+        self.slip_velocity_tol = as_number("slip_velocity_tol", slip_velocity_tol)
+        self.static_mu_array = three("static_mu_array", static_mu_array).copy()
+        self.kinetic_mu_array = three("kinetic_mu_array", kinetic_mu_array).copy()
 
     def _friction(self) -> dict[str, Any]:
-        return {"slip_tolerance": self.slip_velocity_tol, "static_friction": _triple(self.static_mu_array),
-                "kinetic_friction": _triple(self.kinetic_mu_array)}  # fmt: skip
+        return friction_of(self)

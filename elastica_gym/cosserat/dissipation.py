@@ -174,8 +174,10 @@ class RayleighDissipation(DamperBase):
 
 def _element_mass(rod: Any) -> Array:
     """Return the mass of elements: of nodes, halved between neighbours and whole at the ends [kg], (n,)."""
-    if rod.ring_rod_flag or not isinstance(rod, RodBase):
+    if not isinstance(rod, RodBase):
         return np.array(rod.mass)
+    if rod.ring_rod_flag:
+        return 0.5 * (rod.mass + np.roll(rod.mass, -1))
     mass = 0.5 * (rod.mass[1:] + rod.mass[:-1])
     mass[0] += 0.5 * rod.mass[0]
     mass[-1] += 0.5 * rod.mass[-1]

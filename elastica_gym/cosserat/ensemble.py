@@ -13,6 +13,7 @@ from .rigidbody.rigid_body import RigidBodyBase
 from .rod.cosserat_rod import CosseratRod
 from .scene import Scheme
 from .simulation import Callbacks, Simulation, is_lowered
+from .stability import Limit
 from .threads import available_cpus, side_by_side
 
 WORTHWHILE = 100_000
@@ -25,12 +26,13 @@ def simulate_systems(
     """Return what simulates systems: on several CPUs if they fall into groups, and nothing calls Python often."""
     movers = [system for system in systems if isinstance(system, CosseratRod | RigidBodyBase)]
     callbacks = Callbacks(declared.get("callbacks", ()))
+    names = {id(system): f"{type(system).__name__} {number}" for number, system in enumerate(systems)}
     features = {feature: each for feature, each in declared.items() if feature != "callbacks"}
     groups = _groups(movers, features, available_cpus())
     is_long = sum(map(_size, movers)) * callbacks.steps_to_next(0) >= WORTHWHILE
     if len(groups) > 1 and is_long and all(is_lowered(kind, one) for kind, each in features.items() for one in each):
-        return Ensemble([Simulation(group, _of(group, features)) for group in groups], callbacks)
-    return Simulation(movers, features, callbacks)
+        return Ensemble([Simulation(group, _of(group, features), names=names) for group in groups], callbacks)
+    return Simulation(movers, features, callbacks, names)
 
 
 class Ensemble:
@@ -82,6 +84,15 @@ class Ensemble:
         calls = [functools.partial(part.advance, scheme, dt, n_steps, time) for part in self.parts]
         is_long = n_steps * self._size >= WORTHWHILE
         return (side_by_side(calls) if is_long else [call() for call in calls])[0]
+
+    def limit(self) -> Limit:
+        """Return the largest stable time step, and what it is that limits it."""
+        return min(part.limit() for part in self.parts)
+
+    def warn_of_divergence(self) -> None:
+        """Warn, once for each part, if motion is not finite: of what since which step."""
+        for part in self.parts:
+            part.warn_of_divergence()
 
     def clear_loads(self) -> None:
         """Forget the loads from outside."""

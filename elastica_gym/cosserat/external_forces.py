@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from .lowering import SceneBuilder
 from .model import Array
-from .rod.description import require_not_negative, require_positive
+from .rod.description import as_number, as_numbers, require_not_negative, require_positive, three
 from .surroundings import beta_spline, net_couple, wave_profiles
 
 
@@ -38,7 +38,8 @@ class GravityForces(NoForces):
     """
 
     def __init__(self, acc_gravity: ArrayLike = (0.0, -9.80665, 0.0)) -> None:
-        self.acc_gravity = _vector("acc_gravity", acc_gravity)
+        # a copy, unlike what other loads keep: as in 1.0.0
+        self.acc_gravity = three("acc_gravity", acc_gravity).copy()
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Add m g to each node."""
@@ -55,13 +56,13 @@ class EndpointForces(NoForces):
     Parameters
     ----------
     start_force, end_force : array_like
-        [N], (3,)
+        [N], (3,); arrays are followed if they change between runs or callbacks.
     ramp_up_time : float
         [s], 0 for full strength from the start.
     """
 
     def __init__(self, start_force: ArrayLike, end_force: ArrayLike, ramp_up_time: float = 0.0) -> None:
-        self.start_force, self.end_force = _vector("start_force", start_force), _vector("end_force", end_force)
+        self.start_force, self.end_force = three("start_force", start_force), three("end_force", end_force)
         require_not_negative("ramp_up_time", ramp_up_time)
         self.ramp_up_time = float(ramp_up_time)
 
@@ -99,10 +100,11 @@ class EndpointForcesSinusoidal(NoForces):
         tangent_direction: ArrayLike = (0.0, 0.0, 1.0), normal_direction: ArrayLike = (0.0, 1.0, 0.0),
     ) -> None:  # fmt: skip
         require_not_negative("ramp_up_time", ramp_up_time)
-        self.start_force_mag, self.end_force_mag = float(start_force_mag), float(end_force_mag)
+        self.start_force_mag = as_number("start_force_mag", start_force_mag)
+        self.end_force_mag = as_number("end_force_mag", end_force_mag)
         self.ramp_up_time = float(ramp_up_time)
-        self.normal_direction = _vector("normal_direction", normal_direction)
-        self.roll_direction = np.cross(self.normal_direction, _vector("tangent_direction", tangent_direction))
+        self.normal_direction = three("normal_direction", normal_direction)
+        self.roll_direction = np.cross(self.normal_direction, three("tangent_direction", tangent_direction))
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Add the forces at the ends."""
@@ -133,7 +135,7 @@ class UniformForces(NoForces):
     """
 
     def __init__(self, force: float, direction: ArrayLike = (0.0, 0.0, 0.0)) -> None:
-        self.force = float(force) * _vector("direction", direction)[:, None]
+        self.force = as_number("force", force) * three("direction", direction)[:, None]
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Add an equal part to each element, half of it on each node."""
@@ -156,7 +158,7 @@ class UniformTorques(NoForces):
     """
 
     def __init__(self, torque: float, direction: ArrayLike = (0.0, 0.0, 0.0)) -> None:
-        self.torque = float(torque) * _vector("direction", direction)
+        self.torque = as_number("torque", torque) * three("direction", direction)
 
     def apply_torques(self, system: Any, time: float = 0.0) -> None:
         """Add an equal part to each element."""
@@ -217,7 +219,7 @@ class MuscleTorques(NoForces):
     phase_shift : float
         [rad]
     direction : array_like
-        Of the couple in the lab, (3,).
+        Of the couple in the lab, (3,); an array is followed if it changes between runs or callbacks.
     rest_lengths : array_like
         Of the rod's elements [m], (n,).
     ramp_up_time : float
@@ -232,12 +234,13 @@ class MuscleTorques(NoForces):
     ) -> None:  # fmt: skip
         require_positive("period", period)
         require_not_negative("ramp_up_time", ramp_up_time)
-        lengths, coefficients = np.array(rest_lengths, dtype=np.float64), np.atleast_1d(b_coeff)
+        lengths, coefficients = as_numbers("rest_lengths", rest_lengths), np.atleast_1d(as_numbers("b_coeff", b_coeff))
         if with_spline and coefficients.size < 4:
             raise ValueError(f"b_coeff must be at least 4 numbers, not {coefficients.size}")
-        self.direction = _vector("direction", direction)
+        self.direction = three("direction", direction)
         self.angular_frequency = 2.0 * np.pi / period
-        self.wave_number, self.phase_shift = float(wave_number), float(phase_shift)
+        self.wave_number = as_number("wave_number", wave_number)
+        self.phase_shift = as_number("phase_shift", phase_shift)
         self.ramp_up_time = float(ramp_up_time)
         self.s = np.cumsum(lengths) / np.sum(lengths)
         self.my_spline = beta_spline(coefficients, self.s) if with_spline else np.ones_like(self.s)
@@ -283,10 +286,3 @@ def _shares(system: Any) -> Array:
     if system.n_nodes == system.n_elems + 1:
         shares[0] = shares[-1] = 0.5 / system.n_elems
     return shares
-
-
-def _vector(name: str, value: ArrayLike) -> Array:
-    vector = np.ravel(np.array(value, dtype=np.float64))
-    if vector.shape != (3,) or not np.isfinite(vector).all():
-        raise ValueError(f"{name} must be three finite numbers, not {np.array(value).tolist()}")
-    return vector

@@ -6,34 +6,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import surroundings
+from .by_hand import act
 from .external_forces import NoForces
 from .lowering import SceneBuilder
-from .rod.description import require_not_negative
+from .rod.description import as_number, require_not_negative, three
 from .rod.strain import quadrature
 
-SURFACE_TOLERANCE = 1e-4
-"""Gap below which an element is in contact with a plane [m]"""
 
-
-class _OnPlane(NoForces):
-    """What answers to the net force, and so exists in the compiled step alone."""
-
-    IS_COMPILED = True
-
-    plane: surroundings.Plane
-
-    def apply_forces(self, system: Any, time: float = 0.0) -> None:
-        """Refuse: a plane answers to the net force, which is not known before all other loads are."""
-        raise NotImplementedError(
-            f"{type(self).__name__} acts after all other loads, inside the step; it cannot be called by a subclass"
-        )
-
-    def lower(self, builder: SceneBuilder, system: Any) -> None:
-        """Write a plane."""
-        builder.add_plane(system, self.plane)
-
-
-class InteractionPlane(_OnPlane):
+class InteractionPlane(NoForces):
     """A plane without friction: answers to the force that presses on it, to penetration and to approach.
 
     Parameters
@@ -43,23 +23,48 @@ class InteractionPlane(_OnPlane):
     nu : float
         Damping force per velocity along the normal [N s/m].
     plane_origin, plane_normal : array_like
-        A point of it [m], and its normal towards the free side, of any length; (3,) or (3, 1).
+        A point of it [m], and its normal towards the free side, of any length; (3,) or (3, 1). Arrays are followed
+        if they change between runs or callbacks.
+    surface_tol : float, optional
+        Gap below which an element is in contact [m]; 1e-4 m unless given, but at most a twentieth of its radius.
     """
 
-    def __init__(self, k: float, nu: float, plane_origin: ArrayLike, plane_normal: ArrayLike) -> None:
-        self.surface_tol = SURFACE_TOLERANCE
-        self.plane = surroundings.Plane(
-            stiffness=float(k), damping=float(nu), origin=_triple(plane_origin), normal=_triple(plane_normal),
-            surface_tolerance=self.surface_tol,
+    IS_COMPILED = True
+
+    def __init__(
+        self, k: float, nu: float, plane_origin: ArrayLike, plane_normal: ArrayLike, surface_tol: float | None = None
+    ) -> None:
+        self.k, self.nu, self.surface_tol = as_number("k", k), as_number("nu", nu), surface_tol
+        self.plane_origin, self.plane_normal = three("plane_origin", plane_origin), three("plane_normal", plane_normal)
+        # refuses what cannot be
+        self.plane  # noqa: B018
+
+    @property
+    def plane(self) -> surroundings.Plane:
+        """The plane as the compiled step knows it."""
+        return surroundings.Plane(
+            stiffness=self.k, damping=self.nu, origin=_triple(self.plane_origin), normal=_triple(self.plane_normal),
+            surface_tolerance=self.surface_tol, **self._friction(),
         )  # fmt: skip
 
+    def _friction(self) -> dict[str, Any]:
+        return {}
 
-class AnisotropicFrictionalPlane(_OnPlane):
+    def apply_forces(self, system: Any, time: float = 0.0) -> None:
+        """Add the plane's response to all loads so far, and its friction."""
+        act(self.lower, system)
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write a plane."""
+        builder.add_plane(system, self.plane)
+
+
+class AnisotropicFrictionalPlane(InteractionPlane):
     """A plane with anisotropic Coulomb friction (Gazzola et al. 2018, appendix D).
 
     Parameters
     ----------
-    k, nu, plane_origin, plane_normal
+    k, nu, plane_origin, plane_normal, surface_tol
         As for `InteractionPlane`.
     slip_velocity_tol : float
         Slip velocity up to which friction is static; from twice of it on it is kinetic [m/s].
@@ -69,13 +74,15 @@ class AnisotropicFrictionalPlane(_OnPlane):
 
     def __init__(
         self, k: float, nu: float, plane_origin: ArrayLike, plane_normal: ArrayLike, slip_velocity_tol: float,
-        static_mu_array: ArrayLike, kinetic_mu_array: ArrayLike,
+        static_mu_array: ArrayLike, kinetic_mu_array: ArrayLike, surface_tol: float | None = None,
     ) -> None:  # fmt: skip
-        self.plane = surroundings.Plane(
-            stiffness=float(k), damping=float(nu), origin=_triple(plane_origin), normal=_triple(plane_normal),
-            surface_tolerance=SURFACE_TOLERANCE, slip_tolerance=float(slip_velocity_tol),
-            static_friction=_triple(static_mu_array), kinetic_friction=_triple(kinetic_mu_array),
-        )  # fmt: skip
+        self.slip_velocity_tol = as_number("slip_velocity_tol", slip_velocity_tol)
+        self.static_mu_array = three("static_mu_array", static_mu_array).copy()
+        self.kinetic_mu_array = three("kinetic_mu_array", kinetic_mu_array).copy()
+        super().__init__(k, nu, plane_origin, plane_normal, surface_tol)
+
+    def _friction(self) -> dict[str, Any]:
+        return friction_of(self)
 
 
 class SlenderBodyTheory(NoForces):
@@ -103,6 +110,12 @@ class SlenderBodyTheory(NoForces):
         if system.ring_rod_flag:
             raise NotImplementedError("SlenderBodyTheory acts on open rods; this one is a ring")
         builder.add_flow(system, self.dynamic_viscosity)
+
+
+def friction_of(law: Any) -> dict[str, Any]:
+    """Return the anisotropic friction of a plane in PyElastica's names, in those of `surroundings.Plane`."""
+    return {"slip_tolerance": law.slip_velocity_tol, "static_friction": _triple(law.static_mu_array),
+            "kinetic_friction": _triple(law.kinetic_mu_array)}  # fmt: skip
 
 
 def _triple(value: ArrayLike) -> tuple[float, float, float]:

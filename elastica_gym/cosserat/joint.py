@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .contact_forces import NoContact, RodCylinderContact, RodRodContact, RodSelfContact, RodSphereContact
-from .external_forces import _vector
 from .lowering import SceneBuilder
 from .model import Array
 from .rigidbody import Sphere
+from .rod.description import as_number, three
 from .rod.rod_base import RodBase
 
 End = tuple[Any, int, Any, int]
@@ -48,7 +48,7 @@ class FreeJoint(ConnectionBase):
     """
 
     def __init__(self, k: float, nu: float) -> None:
-        self.k, self.nu = float(k), float(nu)
+        self.k, self.nu = as_number("k", k), as_number("nu", nu)
 
     def apply_forces(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
@@ -88,10 +88,10 @@ class HingeJoint(FreeJoint):
 
     def __init__(self, k: float, nu: float, kt: float, normal_direction: ArrayLike) -> None:
         super().__init__(k, nu)
-        normal = _vector("normal_direction", normal_direction)
+        normal = three("normal_direction", normal_direction)
         if not normal.any():
             raise ValueError("normal_direction must not be zero")
-        self.kt, self.normal_direction = float(kt), normal / np.linalg.norm(normal)
+        self.kt, self.normal_direction = as_number("kt", kt), normal / np.linalg.norm(normal)
 
     def apply_torques(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
@@ -117,17 +117,18 @@ class FixedJoint(FreeJoint):
     nut : float
         Torque per relative angular velocity [N m s].
     rest_rotation_matrix : Array, optional
-        C with Q1 = C Q2 at rest, (3, 3); the identity unless given.
+        C with Q1 = C Q2 at rest, (3, 3); the identity unless given. It is followed if it changes between runs
+        or callbacks.
     """
 
     def __init__(
         self, k: float, nu: float, kt: float, nut: float = 0.0, rest_rotation_matrix: ArrayLike | None = None
     ) -> None:
         super().__init__(k, nu)
-        rest = np.eye(3) if rest_rotation_matrix is None else np.array(rest_rotation_matrix, dtype=np.float64)
+        rest = np.eye(3) if rest_rotation_matrix is None else np.asarray(rest_rotation_matrix)
         if rest.shape != (3, 3) or np.abs(rest @ rest.T - np.eye(3)).max() > 1e-8:
             raise ValueError(f"rest_rotation_matrix must be a rotation of shape (3, 3), not {rest.tolist()}")
-        self.kt, self.nut, self.rest_rotation_matrix = float(kt), float(nut), rest
+        self.kt, self.nut, self.rest_rotation_matrix = as_number("kt", kt), as_number("nut", nut), rest
 
     def apply_torques(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
@@ -149,19 +150,22 @@ class _ContactAsJoint(FreeJoint):
 
     IS_COMPILED = True
 
-    contact: NoContact
-
     def apply_forces(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
     ) -> None:
-        """Refuse: there is no other implementation than the compiled one."""
-        self.contact.apply_contact(system_one, system_two, time)
+        """Add forces and torques, as the compiled step does."""
+        self.contact_with(system_two).apply_contact(system_one, system_two, time)
+
+    def contact_with(self, system_two: Any) -> NoContact:
+        """Return the contact with a second system."""
+        raise NotImplementedError
 
     def lower(self, builder: SceneBuilder, ends: End) -> None:
         """Write a pair."""
         one, _, two, _ = ends
-        self.contact.require_systems(one, two)
-        self.contact.lower(builder, one, two)
+        contact = self.contact_with(two)
+        contact.require_systems(one, two)
+        contact.lower(builder, one, two)
 
 
 class ExternalContact(_ContactAsJoint):
@@ -179,15 +183,12 @@ class ExternalContact(_ContactAsJoint):
         super().__init__(k, nu)
         self._friction = (velocity_damping_coefficient, friction_coefficient)
 
-    def lower(self, builder: SceneBuilder, ends: End) -> None:
-        """Write a pair."""
-        two = ends[2]
-        if isinstance(two, RodBase):
-            self.contact: NoContact = RodRodContact(self.k, self.nu)
-        else:
-            kind = RodSphereContact if isinstance(two, Sphere) else RodCylinderContact
-            self.contact = kind(self.k, self.nu, *self._friction)
-        super().lower(builder, ends)
+    def contact_with(self, system_two: Any) -> NoContact:
+        """Return the contact with a second system, by its type."""
+        if isinstance(system_two, RodBase):
+            return RodRodContact(self.k, self.nu)
+        kind = RodSphereContact if isinstance(system_two, Sphere) else RodCylinderContact
+        return kind(self.k, self.nu, *self._friction)
 
 
 class SelfContact(_ContactAsJoint):
@@ -199,9 +200,9 @@ class SelfContact(_ContactAsJoint):
         As for `RodSelfContact`.
     """
 
-    def __init__(self, k: float, nu: float) -> None:
-        super().__init__(k, nu)
-        self.contact = RodSelfContact(k, nu)
+    def contact_with(self, system_two: Any) -> NoContact:
+        """Return the contact of a rod with itself."""
+        return RodSelfContact(self.k, self.nu)
 
 
 def get_relative_rotation_two_systems(system_one: Any, index_one: int, system_two: Any, index_two: int) -> Array:

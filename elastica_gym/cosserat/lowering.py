@@ -44,8 +44,8 @@ STRAY = 0.2
 def is_built_in(cls: type, methods: Sequence[str]) -> bool:
     """Return whether features of a class can be lowered: no subclass has overridden what it does.
 
-    A user's subclass is called even if it has not: it is there to be changed during a run. Only what exists in
-    the compiled step alone cannot be.
+    A user's subclass is called even if it has not: it is there to be changed during a run. What has no implementation
+    but the compiled one is lowered all the same.
     """
     if not (cls.__module__.startswith(str(__package__)) or getattr(cls, "IS_COMPILED", False)):
         return False
@@ -277,12 +277,12 @@ class SceneBuilder:
 
     @property
     def loading(self) -> int:
-        """Where anything acts from outside, but planes: UNLOADED, SPARSE or DENSE."""
+        """Where anything acts from outside, but planes on rods: UNLOADED, SPARSE or DENSE."""
         rows = (self._waves, self._flows, self._tensions, self._sides, self._rod_contacts, self._body_contacts)
         if any(map(len, rows)) or self._dead_force.any() or self._dead_torque.any():
             return DENSE
-        is_loaded = self._point_loads or self._joints or self._body_force.any() or self._body_torque.any()
-        return SPARSE if is_loaded else UNLOADED
+        bodies = self._body_planes or self._body_force.any() or self._body_torque.any()
+        return SPARSE if self._point_loads or self._joints or bodies else UNLOADED
 
     def build(self) -> Scene:
         """Return the tables."""

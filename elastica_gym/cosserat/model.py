@@ -40,7 +40,7 @@ class Planes(NamedTuple):
     damping: Array
     """Damping force per normal velocity nu [N s/m], (P,)"""
     surface_tolerance: Array
-    """Gap below which an element is in contact [m], (P,)"""
+    """Gap below which an element is in contact: at most the first [m], and the second of its radius, (P, 2)"""
     slip_tolerance: Array
     """Slip velocity below which friction is static [m/s], (P,)"""
     kinetic_friction: Array

@@ -1,6 +1,7 @@
 """The running simulation behind a finalized simulator: tables, memory, hooks and callbacks."""
 
 import ctypes
+import functools
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -16,8 +17,10 @@ from .model import Array
 from .modules.declaration import Declaration
 from .rigidbody.rigid_body import RigidBodyBase
 from .rod.cosserat_rod import MATERIAL, CosseratRod, Lowered
-from .rod.description import Continuum, Rod, stable_time_step
+from .rod.description import Continuum, Rod, as_indices, stable_time_step
 from .scene import Hooks, Scheme
+from .stability import Limit, limits
+from .surface.plane import Plane
 
 NEVER = 2**62
 _BYSTANDER = Rod.straight(2, start=(1e6, 0.0, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=1.0,
@@ -106,6 +109,8 @@ class Simulation:
         The features of each kind, as declared.
     callbacks : Callbacks, optional
         Those of the systems.
+    names : mapping, optional
+        How messages call a system, by its identity; by its type alone unless given.
 
     Attributes
     ----------
@@ -114,10 +119,13 @@ class Simulation:
     """
 
     def __init__(
-        self, systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]], callbacks: Callbacks | None = None
-    ) -> None:
+        self, systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]], callbacks: Callbacks | None = None,
+        names: Mapping[int, str] | None = None,
+    ) -> None:  # fmt: skip
         self.rods = [system for system in systems if isinstance(system, CosseratRod)]
         self.bodies = [system for system in systems if isinstance(system, RigidBodyBase)]
+        for rod in self.rods:
+            rod._rest_as_built()
         # a Model has a rod: bodies alone get one that is far from everything and feels nothing
         lowered: list[Continuum] = [_laid(rod) for rod in self.rods] or [_BYSTANDER]
         bodies: Any = [body._lowered() for body in self.bodies]
@@ -128,17 +136,23 @@ class Simulation:
         self._as_laid_out = self._material.copy()
         self._hooks = {name: Hook() for name in Hooks._fields}
         self.callbacks = callbacks or Callbacks()
+        self._names = names or {}
         self._constraints: list[tuple[Any, Any]] = []
         self._has_warned = self._is_judged = False
+        # the step and the place of the first motion that is found not to be finite, and the last step when all was
+        self._broken, self._is_told = np.zeros(3, dtype=np.int64), False
 
-        builder = SceneBuilder(self.model, self.rods, self.bodies)
-        self._add_constraints(declared.get("constraints", ()), builder)
-        self._add_loads(declared.get("forcing", ()), builder)
-        self._add_joints(declared.get("connections", ()), builder)
-        self._add_contacts(declared.get("contacts", ()), builder)
-        self._add_dampers(declared.get("damping", ()), builder)
-        self.scene = builder.build()
-        self._loading = DENSE if self._hooks["loads"].calls else builder.loading
+        self._announced: set[float] = set()
+        self._lowerings: list[Callable[[SceneBuilder], None]] = []
+        self._followed: dict[int, tuple[Any, list[str]]] = {}
+        self._add_constraints(declared.get("constraints", ()))
+        self._add_loads(declared.get("forcing", ()))
+        self._add_joints(declared.get("connections", ()))
+        self._add_contacts(declared.get("contacts", ()))
+        self._add_dampers(declared.get("damping", ()))
+        self._lower()
+        for dt in self._announced:
+            self._warn_of(dt)
 
     # set up
 
@@ -175,54 +189,81 @@ class Simulation:
                 "plane_contact": s.body_contact[0, b],
             })  # fmt: skip
 
-    def _add_constraints(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _lower(self) -> None:
+        """Write the tables of the scene from what the built-in features and the arrays that they follow are now."""
+        builder = SceneBuilder(self.model, self.rods, self.bodies)
+        for lower in self._lowerings:
+            lower(builder)
+        before, self.scene = getattr(self, "scene", None), builder.build()
+        if before is not None:
+            # dampers are as they were at finalize, and what has been listed of contact serves on
+            self.scene = self.scene._replace(rod_contacts=before.rod_contacts, decay=before.decay, drag=before.drag)
+        self._loading = DENSE if self._hooks["loads"].calls else builder.loading
+        self._as_lowered = self._values()
+
+    def _follow(self, *features: Any) -> None:
+        """Note the arrays that features hold, which their caller may change between two entries of compiled code."""
+        for feature in features:
+            names = [name for name, value in vars(feature).items() if isinstance(value, np.ndarray)]
+            self._followed[id(feature)] = feature, names
+
+    def _values(self) -> bytes:
+        """Return what is in the arrays that are followed."""
+        return b"".join(np.asarray(getattr(feature, name)).tobytes()
+                        for feature, names in self._followed.values() for name in names)  # fmt: skip
+
+    def _add_constraints(self, declared: Sequence[Declaration]) -> None:
+        """Add constraints so that the last one wins: after a user's own on a system, built-in ones are called too."""
+        called: set[int] = set()
         for declaration in declared:
             (system,) = declaration.systems
             constraint = _make_constraint(declaration, system)
             self._constraints.append((constraint, system))
-            if is_lowered("constraints", declaration):
-                constraint.lower(builder)
+            if is_lowered("constraints", declaration) and id(system) not in called:
+                self._lowerings.append(constraint.lower)
             else:
+                called.add(id(system))
                 self._hook("values", constraint.constrain_values, system)
                 self._hook("rates", constraint.constrain_rates, system)
 
-    def _add_loads(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _add_loads(self, declared: Sequence[Declaration]) -> None:
         for declaration in declared:
             load, (system,) = declaration.make(), declaration.systems
             if is_lowered("forcing", declaration):
-                load.lower(builder, system)
+                self._follow(load)
+                self._lowerings.append(functools.partial(_lower_load, load, system))
             else:
                 self._hook("loads", load.apply_forces, system)
                 self._hook("loads", load.apply_torques, system)
 
-    def _add_joints(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _add_joints(self, declared: Sequence[Declaration]) -> None:
         for declaration in declared:
             joint, (one, two), (first, second) = declaration.make(), declaration.systems, declaration.indices
             if is_lowered("connections", declaration):
-                # contact as a joint, as in 0.2.x, has no indices
-                for i, j in zip(np.ravel(first), np.ravel(second), strict=True) if np.size(first) else ((0, 0),):
-                    joint.lower(builder, (one, int(i), two, int(j)))
+                self._follow(joint)
+                self._lowerings.append(functools.partial(lower_joint, joint, one, first, two, second))
             else:
                 self._hook("loads", joint.apply_forces, one, first, two, second)
                 self._hook("loads", joint.apply_torques, one, first, two, second)
 
-    def _add_contacts(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _add_contacts(self, declared: Sequence[Declaration]) -> None:
         for declaration in declared:
             contact, (one, two) = declaration.make(), declaration.systems
             contact.require_systems(one, two)
             if is_lowered("contacts", declaration):
-                contact.lower(builder, one, two)
+                self._follow(contact, *(each for each in (one, two) if isinstance(each, Plane)))
+                self._lowerings.append(functools.partial(_lower_contact, contact, one, two))
             else:
                 self._hook("loads", contact.apply_contact, one, two)
 
-    def _add_dampers(self, declared: Sequence[Declaration], builder: SceneBuilder) -> None:
+    def _add_dampers(self, declared: Sequence[Declaration]) -> None:
         for declaration in declared:
             (system,) = declaration.systems
             damper = declaration.make(_system=system)
             if isinstance(damper, AnalyticalLinearDamper) and damper.time_step is not None:
-                self._warn_of(damper.time_step, [system] if isinstance(system, CosseratRod) else [])
+                self._announced.add(damper.time_step)
             if is_lowered("damping", declaration):
-                damper.lower(builder)
+                self._lowerings.append(damper.lower)
             else:
                 self._hook("damping", damper.dampen_rates, system)
 
@@ -258,22 +299,47 @@ class Simulation:
 
     @steps.setter
     def steps(self, count: int) -> None:
-        self.state.step[0] = count
+        self.state.step[0] = self._broken[2] = count
 
     def advance(self, scheme: Scheme, dt: float, n_steps: int, time: float) -> float:
         """Take steps from a time on, without callbacks, and return the time after [s]."""
         self.require_time_step(dt)
-        if not np.array_equal(self._material, self._as_laid_out):
-            for rod, first in zip(self.rods, self.model.first_slot, strict=True):
-                lay_out(self.model._asdict(), _laid(rod), int(first))
-            self._as_laid_out[:] = self._material
-        self.state.time[0] = time
+        if self.read_material() or self._values() != self._as_lowered:
+            self._lower()
+        for body in self.bodies:
+            body._time_step = dt
+        self._time_step, self.state.time[0] = dt, time
         hooks = Hooks(**{name: hook.address for name, hook in self._hooks.items()})
         stopped = simulate(self.model, self.scene, self.state, self.control, hooks, scheme, dt, n_steps,
-                           DENSE if self._has_loads else self._loading)  # fmt: skip
+                           DENSE if self._has_loads else self._loading, self._broken)  # fmt: skip
         if stopped:
+            self.warn_of_divergence()
             self._raise_error()
         return float(self.state.time[0])
+
+    def read_material(self) -> bool:
+        """Lay the rods' material out again if it has changed, and return whether it has."""
+        if np.array_equal(self._material, self._as_laid_out):
+            return False
+        for rod, first in zip(self.rods, self.model.first_slot, strict=True):
+            lay_out(self.model._asdict(), _laid(rod), int(first))
+        self._as_laid_out[:] = self._material
+        return True
+
+    def warn_of_divergence(self) -> None:
+        """Warn, once, if motion is not finite: of what since which step, within those between two looks."""
+        step, place, sound = self._broken.tolist()
+        if step == 0 or self._is_told:
+            return
+        self._is_told = True
+        rod = int(np.searchsorted(self.model.first_slot, place, side="right")) - 1
+        name = self._name(self.bodies[-1 - place] if place < 0 else self.rods[rod])
+        since = f"step {step}" if step == sound + 1 else f"a step from {sound + 1} to {step}"
+        warnings.warn(f"velocities of {name} are infinite or NaN since {since}; the time step of "
+                      f"{self._time_step:.4g} s may be too large", RuntimeWarning, stacklevel=3)  # fmt: skip
+
+    def _name(self, system: Any) -> str:
+        return self._names.get(id(system), type(system).__name__)
 
     @property
     def _has_loads(self) -> bool:
@@ -298,20 +364,45 @@ class Simulation:
             raise ValueError(f"the time step must be a positive number, not {dt}")
         if not self._is_judged:
             self._is_judged = True
-            self._warn_of(dt, self.rods)
+            self._warn_of(dt)
 
-    def _warn_of(self, dt: float, rods: Sequence[CosseratRod]) -> None:
-        """Warn of a time step that is too large for some rods, once."""
-        bound = min((stable_time_step(rod) for rod in rods), default=math.inf)
+    def limit(self) -> Limit:
+        """Return the largest stable time step, and what it is that limits it."""
+        rods, bodies = ([self._name(system) for system in systems] for systems in (self.rods, self.bodies))
+        found = limits(self.model, self.scene, rods, bodies)
+        found += [Limit(stable_time_step(rod), f"{name} at rest") for rod, name in zip(self.rods, rods, strict=True)]
+        return min(found, default=Limit(math.inf, "nothing"))
+
+    def _warn_of(self, dt: float) -> None:
+        """Warn of a time step that is too large for what is declared, once."""
+        bound, culprit = self.limit()
         if dt > bound and not self._has_warned:
             self._has_warned = True
-            warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the stable one of a rod at rest",
+            warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the largest stable one of {culprit}",
                           RuntimeWarning, stacklevel=5)  # fmt: skip
 
 
 def is_lowered(kind: str, declaration: Declaration) -> bool:
     """Return whether a feature of a kind is part of the compiled step, rather than called by it."""
     return declaration.cls is not None and is_built_in(declaration.cls, CALLED[kind])
+
+
+def lower_joint(joint: Any, one: Any, first: Any, two: Any, second: Any, builder: SceneBuilder) -> None:
+    """Write the rows of a joint, one for each pair of indices."""
+    if np.size(first) != np.size(second):
+        raise ValueError(f"first_connect_idx and second_connect_idx of {type(joint).__name__} must be as many, "
+                         f"not {np.size(first)} and {np.size(second)}")  # fmt: skip
+    # contact as a joint, as in 0.2.x, has no indices
+    for i, j in zip(np.ravel(first), np.ravel(second), strict=True) if np.size(first) else ((0, 0),):
+        joint.lower(builder, (one, int(i), two, int(j)))
+
+
+def _lower_load(load: Any, system: Any, builder: SceneBuilder) -> None:
+    load.lower(builder, system)
+
+
+def _lower_contact(contact: Any, one: Any, two: Any, builder: SceneBuilder) -> None:
+    contact.lower(builder, one, two)
 
 
 def _laid(rod: CosseratRod) -> Lowered:
@@ -323,7 +414,7 @@ def _make_constraint(declaration: Declaration, system: Any) -> Any:
     """Make a constraint from what is at its indices now, its own arguments, and the system."""
     kwargs = dict(declaration.kwargs)
     indices = {name: kwargs.pop(name, ()) for name in ("constrained_position_idx", "constrained_director_idx")}
-    positions, directors = (np.ravel(index).astype(np.int64) for index in indices.values())
+    positions, directors = (as_indices(name, index) for name, index in indices.items())
     for name, index, count in (("constrained_position_idx", positions, system.n_nodes),
                                ("constrained_director_idx", directors, system.n_elems)):  # fmt: skip
         if ((index < -count) | (index >= count)).any():
@@ -332,7 +423,12 @@ def _make_constraint(declaration: Declaration, system: Any) -> Any:
     fixed += [system.director_collection[..., i].copy() for i in directors]
     more = {"_system": system, **indices} if declaration.cls is None or declaration.accepts("_system") else {}
     declaration.kwargs = kwargs
-    constraint = declaration.make(*fixed, **more)
+    try:
+        constraint = declaration.make(*fixed, **more)
+    except TypeError as error:
+        raise TypeError(f"{error}; its first arguments are the positions at constrained_position_idx "
+                        f"{positions.tolist()} and the directors at constrained_director_idx {directors.tolist()}"
+                        ) from error  # fmt: skip
     constraint._set_up(system, *indices.values())
     return constraint
 

@@ -10,6 +10,9 @@ from .rod import require_finite, require_not_negative, require_positive
 
 Vector = tuple[float, float, float]
 
+SURFACE_TOLERANCE = 1e-4, 0.05
+"""Gap below which an element is in contact with a plane, unless given: at most this [m], and this of its radius"""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Plane:
@@ -29,8 +32,8 @@ class Plane:
         Coefficients forward (along the tangent), backward and sideways.
     slip_tolerance : float
         Slip velocity up to which friction is static; from twice of it on it is kinetic [m/s].
-    surface_tolerance : float
-        Gap below which an element is in contact [m].
+    surface_tolerance : float, optional
+        Gap below which an element is in contact [m]; 1e-4 m unless given, but at most a twentieth of its radius.
     """
 
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -40,19 +43,26 @@ class Plane:
     kinetic_friction: tuple[float, float, float] = (0.0, 0.0, 0.0)
     static_friction: tuple[float, float, float] = (0.0, 0.0, 0.0)
     slip_tolerance: float = 1e-8
-    surface_tolerance: float = 1e-4
+    surface_tolerance: float | None = None
 
     def __post_init__(self) -> None:
         require_finite("origin", self.origin, 3)
         require_finite("normal", self.normal, 3)
         require_positive("length of normal", float(np.linalg.norm(self.normal)))
         require_positive("slip_tolerance", self.slip_tolerance)
-        for name in ("stiffness", "damping", "surface_tolerance"):
+        for name in ("stiffness", "damping"):
             require_not_negative(name, getattr(self, name))
+        if self.surface_tolerance is not None:
+            require_not_negative("surface_tolerance", self.surface_tolerance)
         for name in ("kinetic_friction", "static_friction"):
             require_finite(name, getattr(self, name), 3)
             for direction, value in zip(("forward", "backward", "sideways"), getattr(self, name), strict=True):
                 require_not_negative(f"{name} {direction}", value)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Gap below which an element is in contact: at most the first [m], and the second of its radius."""
+        return SURFACE_TOLERANCE if self.surface_tolerance is None else (self.surface_tolerance, np.inf)
 
 
 @dataclass(frozen=True, kw_only=True)

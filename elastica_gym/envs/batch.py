@@ -17,6 +17,7 @@ from ..cosserat import advance, at_rest
 from ..cosserat.kernels.compiler import Bound
 from ..cosserat.model import Array
 from ..cosserat.rod import require_positive, require_stable
+from ..cosserat.stability import require_stable_model
 from ..cosserat.threads import Team, available_cpus
 from ..muscles import N_ACTIVATIONS, activation_names
 from .spaces import NamedBox
@@ -124,6 +125,7 @@ class BatchEnv(VectorEnv):
         require_positive("duration", duration)
         try:
             require_stable(self.body.rods, sim_dt)
+            require_stable_model(self.body.model, sim_dt)
         except ValueError as error:
             raise ValueError(f"sim_dt: {error}") from None
         self.control_dt = control_dt

@@ -40,6 +40,8 @@ def measure() -> Result:
     simulator = Simulator()
     rod = CosseratRod.straight_rod(
         19, np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), LENGTH, RADIUS, 1000.0, nu=2.0,
+        # such a torque per spin would be unstable at this step, if anything turned
+        nu_for_torques=0.0,
         youngs_modulus=MODULUS,
     )  # fmt: skip
     simulator.append(rod)

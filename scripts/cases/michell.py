@@ -72,7 +72,7 @@ def squared_frequency(turns: float) -> float:
     rest_kappa[2] = -turns / R
     ring = CosseratRod.ring_rod(
         N, np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 2.0 * np.pi * R, RADIUS, DENSITY,
-        youngs_modulus=YOUNG, shear_modulus=SHEAR, rest_kappa=rest_kappa,
+        youngs_modulus=YOUNG, shear_modulus=SHEAR,
     )  # fmt: skip
     nudge(ring, turns)
     simulator = Simulator()
@@ -81,6 +81,8 @@ def squared_frequency(turns: float) -> float:
     sizes: list[float] = []
     simulator.collect_diagnostics(ring).using(ModeCallBack, 20, times, sizes)
     simulator.finalize()
+    # here, since finalize takes a ring without any for one at rest as it is
+    ring.rest_kappa[:] = rest_kappa
     duration = 5.0 / np.sqrt(abs(exact(turns)))
     integrate(PositionVerlet(), simulator, duration, int(duration / (0.7 * stable_time_step(ring))), progress_bar=False)
     return from_samples(np.array(times), np.array(sizes))

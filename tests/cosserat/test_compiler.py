@@ -116,7 +116,7 @@ rows = types.UniTuple(row, 3)
 shape = {
     **dict.fromkeys("x v w force torque kappa lever axis couple target before after stress push axial axial_material "
                     "rest_kappa rest_sigma S J B inv_inertia".split(), rows),
-    **dict.fromkeys("h dt rate k_plane nu_plane surface_tol slip_tol".split(), scalar),
+    **dict.fromkeys("h dt rate k_plane nu_plane surface_tol surface_part slip_tol".split(), scalar),
     **dict.fromkeys(("first", "n"), types.uint64), **dict.fromkeys(("is_balanced", "is_muscular"), types.boolean),
     "Q": types.UniTuple(rows, 3),
     "share": types.UniTuple(row, 2), "weight": types.UniTuple(row, 2),

@@ -256,7 +256,7 @@ def test_a_subclass_may_be_changed_during_a_run():
 
 
 class Softer(ea.RodSelfContact):
-    """Overrides nothing, and cannot be called."""
+    """Overrides nothing of what has no implementation but the compiled one."""
 
 
 def test_a_subclass_of_what_is_compiled_is_what_it_is_derived_from():
@@ -733,3 +733,55 @@ def test_deprecated_names_warn(name):
     sim.constrain(rod).using(getattr(ea, name), **(CLAMP if name == "OneEndFixedRod" else {}))
     with pytest.warns(DeprecationWarning, match=name):
         sim.finalize()
+
+
+ROD = dict(n_elements=6, start=np.zeros(3), direction=Z, normal=Y, base_length=0.3, base_radius=0.01, density=1000.0,
+           youngs_modulus=1e5)  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "value", "error"), [
+    ("n_elements", 6.0, TypeError), ("n_elements", "6", TypeError), ("n_elements", True, TypeError),
+    ("n_elements", 1, ValueError), ("base_length", "long", TypeError), ("base_length", None, TypeError),
+    ("base_radius", "thin", TypeError), ("density", [1000.0, "x"], TypeError), ("youngs_modulus", "1e5", TypeError),
+    ("start", "origin", TypeError), ("start", [0.0, 1.0], ValueError), ("normal", None, ValueError),
+    ("shear_modulus", [1.0, 2.0], TypeError), ("position", "line", TypeError), ("nu", "none", TypeError),
+    ("rest_kappa", "flat", TypeError), ("poisson_ratio", "half", TypeError),
+])  # fmt: skip
+def test_errors_of_rods_name_the_argument(name, value, error):
+    refuses(lambda: ea.CosseratRod.straight_rod(**{**ROD, name: value}), name, error=error)
+
+
+@pytest.mark.parametrize(("kwargs", "words"), [
+    ({}, ("constrained_position_idx []", "constrained_director_idx []")),
+    (dict(constrained_position_idx=(0,)), ("constrained_director_idx []",)),
+    (dict(constrained_position_idx=(0.5,), constrained_director_idx=(0,)), ("constrained_position_idx", "0.5")),
+    (dict(constrained_position_idx=(0,), constrained_director_idx=("first",)), ("constrained_director_idx", "first")),
+])  # fmt: skip
+def test_errors_of_constraints_name_the_indices(kwargs, words):
+    rod = make_rod()
+    sim = simulator(rod)
+    sim.constrain(rod).using(ea.OneEndFixedBC, **kwargs)
+    refuses(sim.finalize, *words, error=TypeError)
+
+
+def test_errors_of_joints_name_the_indices():
+    rods = make_rod(), make_rod()
+    sim = simulator(*rods)
+    refuses(lambda: sim.connect(*rods, 0.5, 0.5), "first_connect_idx", "0.5", error=TypeError)
+    sim.connect(*rods, (0, 1), (0,)).using(ea.FreeJoint, k=1.0, nu=0.0)
+    refuses(sim.finalize, "first_connect_idx", "second_connect_idx", "2 and 1", error=ValueError)
+
+
+@pytest.mark.parametrize(("make", "name"), [
+    (lambda x: ea.FreeJoint(x, 0.0), "k"), (lambda x: ea.FixedJoint(1.0, 0.0, 1.0, x), "nut"),
+    (lambda x: ea.HingeJoint(1.0, 0.0, x, X), "kt"), (lambda x: ea.RodRodContact(1.0, x), "nu"),
+    (lambda x: ea.RodCylinderContact(1.0, 0.0, x), "velocity_damping_coefficient"),
+    (lambda x: ea.CylinderPlaneContact(1.0, 0.0, x), "friction_coefficient"),
+    (lambda x: ea.RodPlaneContact(x, 0.0), "k"), (lambda x: ea.UniformForces(x, Y), "force"),
+    (lambda x: ea.InteractionPlane(1.0, x, np.zeros(3), Y), "nu"), (lambda x: ea.Plane(x, Y), "plane_origin"),
+    (lambda x: ea.EndpointForces(x, X), "start_force"), (lambda x: ea.GravityForces(x), "acc_gravity"),
+    (lambda x: ea.EndpointForces(X, X, x), "ramp_up_time"),
+])  # fmt: skip
+def test_errors_of_features_name_the_argument(make, name):
+    refuses(lambda: make("much"), name, "much", error=TypeError)
+    refuses(lambda: make(np.nan), name, "nan", error=ValueError)

@@ -27,8 +27,8 @@ def towards(direction, forward, backward):
 
 @stage
 def touch(
-    first, n, normal, origin, k_plane, nu_plane, surface_tol, x, radius, share, force,
-    response, damping, carried, axial,
+    first, n, normal, origin, k_plane, nu_plane, surface_tol, surface_part, x, radius, share,
+    force, response, damping, carried, axial,
 ):  # fmt: skip
     """Compute the plane's response to push and penetration, how it damps, N, and a."""
     n0, n1, n2 = normal[0], normal[1], normal[2]
@@ -46,7 +46,9 @@ def touch(
 
         r = radius[k]
         gap = n0 * x[0][k] + n1 * x[1][k] + n2 * x[2][k] + 0.5 * dn - height - r
-        touching = 1.0 if gap <= surface_tol else 0.0
+        near = surface_part * r
+        near = near if near < surface_tol else surface_tol
+        touching = 1.0 if gap <= near else 0.0
         # a ghost has no section
         touching = touching if r > 0.0 else 0.0
         N = -fn if fn < 0.0 else 0.0

@@ -24,9 +24,13 @@ from .sides import join_sides
 from .step import ORTHONORMALISE_EVERY, drift, drift_twice, internal, kick, matrix, rows, settle
 from .tension import bend_energy_rates, reciprocate
 from .vectors import add, plus, times, to_material, vector
+from .watch import find_broken
 
 # where there are loads from outside: nowhere, in a few slots, everywhere
 UNLOADED, SPARSE, DENSE = 0, 1, 2
+
+# steps between two looks at whether motion is finite: at each, one would take 2 to 6 % of the step
+WATCH_EVERY = 8
 
 
 @inner
@@ -197,14 +201,26 @@ def prepare(scene, state, dt):
         state.decay[0, k] = 1.0
 
 
+@inner
+def watch(state, n, broken):
+    """Note the step and the place of the first motion that is found not to be finite, and the last step when it was."""
+    if broken[0] == 0:
+        place = find_broken(FIRST, n, state.v[0], state.w[0], state.body_v[0], state.body_w[0])
+        if place != 0:
+            broken[0], broken[1] = state.step[0] + 1, place
+        else:
+            broken[2] = state.step[0] + 1
+
+
 @entry
-def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
+def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading, broken):
     """Take steps of a symplectic scheme. Returns 0, or 1 if a hook asked to stop in the middle of a step.
 
     Unlike `advance`, it does not merge the last drift of a step with the first of the next into one of twice the
     time: what comes out does not depend, to the last bit, on where a run is cut. External loads are cleared between
     stages, but neither before the first nor after the last, so that those set from outside act once, and callbacks
-    see them. ``loading`` is one of UNLOADED, SPARSE (only where ``scene.touched`` says) and DENSE.
+    see them. ``loading`` is one of UNLOADED, SPARSE (only where ``scene.touched`` says) and DENSE. ``broken`` gets the
+    number of the step after which motion is found not to be finite, the place, and the last step known to be sound.
     """
     n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
     prepare(scene, state, dt)
@@ -260,6 +276,28 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading):
             kick(model, state, 0, n, scheme.kicks[stage] * dt)
             if constrain_rates(scene, state, hooks) != 0:
                 return 1
-            if stage == n_kicks - 1 and damp(model, scene, state, hooks, n, dt) != 0:
-                return 1
+            if stage == n_kicks - 1:
+                if damp(model, scene, state, hooks, n, dt) != 0:
+                    return 1
+                if step == n_steps - 1 or (state.step[0] + 1) % WATCH_EVERY == 0:
+                    watch(state, n, broken)
     return 0
+
+
+@entry
+def load(model, scene, state, control, hooks, dt, is_last):
+    """Collect what a scene does to systems as they are, without a step: its loads or, then, the answer of its planes.
+
+    Loads are added to those in Control, then all to the net loads in State, which the planes answer to. ``dt`` is the
+    time step that friction of bodies on planes needs, 0 for none.
+    """
+    n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
+    if is_last:
+        ground(model, scene, state)
+        ground_bodies(dt, scene.body_planes, scene.grounded, scene.ground_friction, model.cylinders, state.body_x[0],
+                      state.body_v[0], state.body_Q[0], state.body_w[0], state.body_contact[0], state.body_force[0],
+                      state.body_torque[0])  # fmt: skip
+    else:
+        internal(model, state, control, 0, FIRST, n, 0.0)
+        external_loads(model, scene, state, control, hooks, n)
+        add_loads(scene, state, control, n, DENSE)

@@ -123,8 +123,8 @@ def settle(model, state, planes, j, i, first, n):
     slip_axial, slip_rolling, damping = s.scratch[i, 13], s.scratch[i, 14], s.scratch[i, 15]
     share, weight = (m.share[0], m.share[1]), (m.weight[0], m.weight[1])
 
-    touch(first, n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j], x, radius, share,
-          force, response, damping, carried, axial)  # fmt: skip
+    touch(first, n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j, 0],
+          p.surface_tolerance[j, 1], x, radius, share, force, response, damping, carried, axial)  # fmt: skip
     slip(first, n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling,
          response)  # fmt: skip
     n_sticking = slide(

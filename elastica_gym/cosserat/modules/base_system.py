@@ -165,6 +165,16 @@ class BaseSystemCollection(MutableSequence):
             raise RuntimeError("the simulator is not finalized; call finalize() before it is run")
         return self._simulation
 
+    def stable_time_step(self) -> float:
+        """Return the largest time step of position Verlet that all rods and all that is declared allow [s].
+
+        Raises
+        ------
+        RuntimeError
+            Before ``finalize``.
+        """
+        return self.simulation.limit().time_step
+
     def constrain_values(self, time: float) -> None:
         """Apply the constraints of positions and directors."""
         self.simulation.constrain_values(time)
@@ -180,6 +190,16 @@ class BaseSystemCollection(MutableSequence):
     def close(self) -> None:
         """Tell callbacks that the simulation is over."""
         self.simulation.callbacks.close()
+
+    def __getstate__(self) -> dict[str, Any]:
+        if self._simulation is not None:
+            raise TypeError("a finalized simulator cannot be copied or pickled, since its systems share memory with "
+                            "compiled code; use save_state, and load_state on a new simulator")
+        return vars(self)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._find_places()
 
     def _require_open(self, action: str) -> None:
         if self._simulation is not None:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..joint import ConnectionBase
+from ..rod.description import as_indices
 from .declaration import Declaration
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Connections(_Collection):
                             f"not {first_connect_idx!r} and {second_connect_idx!r}")  # fmt: skip
         for name, system, index in (("first_connect_idx", first_rod, first_connect_idx),
                                     ("second_connect_idx", second_rod, second_connect_idx)):  # fmt: skip
-            for each in np.ravel(index):
+            for each in as_indices(name, index):
                 if not -system.n_nodes <= each < system.n_nodes:
                     raise IndexError(f"{name} must be from {-system.n_nodes} to {system.n_nodes - 1}, not {each}")
         declaration = self._declare("connections", "joint", ConnectionBase, first_rod, second_rod)

@@ -59,6 +59,8 @@ class RigidBodyBase:
     REQUISITE_MODULES: ClassVar[list[type]] = []
     n_elems = n_nodes = 1
     ring_rod_flag = False
+    _time_step = 0.0
+    """Of the run that it is in, which friction on planes needs when it is called by hand [s]"""
 
     position_collection = Field()
     velocity_collection = Field()

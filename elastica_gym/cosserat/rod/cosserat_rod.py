@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ..model import Array
 from . import strain
-from .description import SHEAR_CORRECTION, require_not_negative, require_positive
+from .description import SHEAR_CORRECTION, as_count, as_number, as_numbers, require_not_negative, require_positive
 from .rod_base import RodBase
 
 MATERIAL = (
@@ -19,7 +19,7 @@ MATERIAL = (
 """Attributes that a simulation reads when it is entered, kept in one piece of memory."""
 
 TOLERANCE = 1e-8
-"""How far given positions and directors may be from what they should be"""
+"""How far given positions, by the size of the rod, and directors may be from what they should be"""
 
 
 class Field:
@@ -225,8 +225,7 @@ class CosseratRod(RodBase):
         ValueError, TypeError
             If an argument cannot be: names it, its value and what is allowed.
         """
-        if n_elements < 2:
-            raise ValueError(f"n_elements must be at least 2, not {n_elements}")
+        n_elements = as_count("n_elements", n_elements, 2)
         require_positive("base_length", base_length)
         tangent = _unit("direction", direction)
         first = _vector("start", start)[:, None]
@@ -234,7 +233,7 @@ class CosseratRod(RodBase):
             nodes = first + base_length * tangent[:, None] * np.linspace(0.0, 1.0, n_elements + 1)
         else:
             nodes = _array("position", position, (3, n_elements + 1))
-            if np.abs(nodes[:, :1] - first).max() > TOLERANCE:
+            if np.abs(nodes[:, :1] - first).max() > TOLERANCE * (base_length + np.abs(first).max()):
                 raise ValueError(f"start must be the first node of position, {nodes[:, 0]}, not {first[:, 0]}")
         return cls._made(
             nodes, False, normal, base_radius, density, nu, youngs_modulus, poisson_ratio, nu_for_torques,
@@ -253,10 +252,10 @@ class CosseratRod(RodBase):
 
         A ring of n elements has as many nodes and Voronoi points, so ``position`` and ``rest_kappa``
         are (3, n). The first node lies along direction x normal from the centre, and the ring runs
-        towards ``direction`` from there. The other parameters are those of `straight_rod`.
+        towards ``direction`` from there. A ``rest_kappa`` or ``rest_sigma`` that is zero throughout at
+        ``finalize`` becomes that of the ring as it is then. The other parameters are those of `straight_rod`.
         """
-        if n_elements < 3:
-            raise ValueError(f"n_elements must be at least 3, not {n_elements}")
+        n_elements = as_count("n_elements", n_elements, 3)
         require_positive("base_length", base_length)
         if position is None:
             d, up = _unit("direction", direction)[:, None], _unit("normal", normal)[:, None]
@@ -384,6 +383,13 @@ class CosseratRod(RodBase):
 
     # between the rod and its simulation
 
+    def _rest_as_built(self) -> None:
+        """Let a ring without any strain at rest be at rest as it is: no ring is at rest without curvature."""
+        if self.ring_rod_flag and not self.rest_sigma.any():
+            self.rest_sigma[:] = self.sigma
+        if self.ring_rod_flag and not self.rest_kappa.any():
+            self.rest_kappa[:] = self.kappa
+
     def as_continuum(self) -> Lowered:
         """Return the rod as the physics knows it, a ring cut open."""
         return self._lowered().opened() if self.ring_rod_flag else self._lowered()
@@ -444,7 +450,7 @@ def _shear_modulus(Y: float, G: float | None, poisson_ratio: float | None, nu: f
     if poisson_ratio is None and nu is None:
         return Y / 3.0
     ratio = 0.5 if poisson_ratio is None else poisson_ratio
-    if not ratio > -1.0:
+    if not as_number("poisson_ratio", ratio) > -1.0:
         raise ValueError(f"poisson_ratio must be above -1, not {ratio}")
     return Y / (1.0 + ratio)
 
@@ -468,7 +474,7 @@ def _directors(edges: Array, normal: ArrayLike, directors: ArrayLike | None) -> 
 
 
 def _each(name: str, value: ArrayLike, n: int) -> Array:
-    values = np.asarray(value, dtype=np.float64)
+    values = as_numbers(name, value)
     if values.shape not in ((), (1,), (n,)):
         raise ValueError(f"{name} must be one number or {n}, one for each element; its shape is {values.shape}")
     require_positive(f"smallest {name}", float(values.min()))
@@ -476,7 +482,7 @@ def _each(name: str, value: ArrayLike, n: int) -> Array:
 
 
 def _array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
-    array = np.array(value, dtype=np.float64, order="C")
+    array = np.array(as_numbers(name, value), order="C")
     if array.shape != shape:
         raise ValueError(f"{name} must have shape {shape}, not {array.shape}")
     if not np.isfinite(array).all():
@@ -485,7 +491,7 @@ def _array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 def _vector(name: str, value: ArrayLike) -> Array:
-    return _array(name, np.ravel(np.asarray(value, dtype=np.float64)), (3,))
+    return _array(name, np.ravel(as_numbers(name, value)), (3,))
 
 
 def _unit(name: str, value: ArrayLike) -> Array:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..model import Array
 
@@ -148,8 +148,7 @@ class Rod:
         **material
             The remaining attributes of `Rod`.
         """
-        if n_elements < 2:
-            raise ValueError(f"n_elements must be at least 2, not {n_elements}")
+        n_elements = as_count("n_elements", n_elements, 2)
         require_positive("length", length)
         tangent = _unit("direction", direction)
         nodes = _array("start", start, (3,))[:, None] + length * tangent[:, None] * np.linspace(0, 1, n_elements + 1)
@@ -249,14 +248,22 @@ class Rod:
         return 1.0 / self.inertia
 
 
+class Limited(Protocol):
+    """A simulator, which knows its largest stable time step."""
+
+    def stable_time_step(self) -> float: ...  # noqa: D102
+
+
 class Convertible(Protocol):
     """A rod of other names that can be described as a `Continuum`."""
 
     def as_continuum(self) -> Continuum: ...  # noqa: D102
 
 
-def stable_time_step(rod: Continuum | Convertible) -> float:
-    """Return the largest time step of position Verlet that is stable for a rod at rest [s].
+def stable_time_step(rod: "Continuum | Convertible | Limited") -> float:
+    """Return the largest time step of position Verlet that is stable for a rod at rest, or a finalized simulator [s].
+
+    That of a simulator is the smallest of its rods and of each joint, contact, plane and drag by itself.
 
     The highest frequency of a uniform rod is that of its shortest wave, in which neighbouring nodes
     and elements move oppositely: stretch, twist, and bending coupled to shear. Measured for r/l from
@@ -265,8 +272,10 @@ def stable_time_step(rod: Continuum | Convertible) -> float:
 
     Parameters
     ----------
-    rod : Rod or CosseratRod
+    rod : Rod, CosseratRod or BaseSystemCollection
     """
+    if hasattr(rod, "stable_time_step"):
+        return rod.stable_time_step()
     if hasattr(rod, "as_continuum"):
         rod = rod.as_continuum()
     l, S, J = rod.rest_length, rod.shear_stiffness, rod.inertia / rod.rest_length  # noqa: E741
@@ -291,14 +300,86 @@ def require_stable(rods: Sequence[Continuum], time_step: float) -> None:
         raise ValueError(f"the time step must be below {bound:.4g} s for these rods to be stable, not {time_step:g} s")
 
 
+def as_number(name: str, value: ArrayLike) -> float:
+    """Return a finite number as a float.
+
+    Raises
+    ------
+    TypeError
+        If it is not a number.
+    ValueError
+        If it is infinite or NaN.
+    """
+    _require_number(name, value)
+    number = float(np.asarray(value, dtype=np.float64).reshape(()))
+    if not np.isfinite(number):
+        raise ValueError(f"{name} must be a finite number, not {number}")
+    return number
+
+
+def as_numbers(name: str, value: ArrayLike) -> Array:
+    """Return an array of floats, or raise TypeError if ``value`` is none of numbers."""
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} must be numbers, not {value!r}") from None
+
+
+def three(name: str, value: ArrayLike) -> Array:
+    """Return three finite numbers, (3,): of a given array its own memory, so that who changes it is followed.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If they are none.
+    """
+    numbers = as_numbers(name, value)
+    if numbers.size != 3 or not np.isfinite(numbers).all():
+        raise ValueError(f"{name} must be three finite numbers, not {numbers.tolist()}")
+    return np.asarray(value).reshape(3)
+
+
+def as_count(name: str, value: object, least: int) -> int:
+    """Return a whole number that is not below ``least`` as an int.
+
+    Raises
+    ------
+    TypeError
+        If it is not a whole number by its type.
+    ValueError
+        If it is too small.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise TypeError(f"{name} must be a whole number, not {value!r}")
+    if value < least:
+        raise ValueError(f"{name} must be at least {least}, not {value}")
+    return int(value)
+
+
+def as_indices(name: str, value: Any) -> NDArray[np.int64]:
+    """Return an index or several as an array, or raise TypeError if they are no whole numbers."""
+    given = np.ravel(np.asarray(value))
+    if given.size and given.dtype.kind not in "iu":
+        raise TypeError(f"{name} must be whole numbers, not {value!r}")
+    return given.astype(np.int64)
+
+
+def _require_number(name: str, value: Any) -> None:
+    given = np.asarray(value)
+    if given.size != 1 or given.dtype.kind not in "iuf":
+        raise TypeError(f"{name} must be a number, not {value!r}")
+
+
 def require_positive(name: str, value: float) -> None:
-    """Raise ValueError unless ``value`` is finite and above zero."""
+    """Raise ValueError unless ``value`` is finite and above zero, and TypeError unless it is a number."""
+    _require_number(name, value)
     if not (np.isfinite(value) and value > 0.0):
         raise ValueError(f"{name} must be a positive number, not {value}")
 
 
 def require_not_negative(name: str, value: float) -> None:
-    """Raise ValueError unless ``value`` is finite and not below zero."""
+    """Raise ValueError unless ``value`` is finite and not below zero, and TypeError unless it is a number."""
+    _require_number(name, value)
     if not (np.isfinite(value) and value >= 0.0):
         raise ValueError(f"{name} must be zero or a positive number, not {value}")
 
@@ -312,7 +393,7 @@ def require_finite(name: str, values: ArrayLike, size: int) -> None:
 
 def _array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> Array:
     """Return a contiguous copy of ``value``, of the given shape (None: any size) and finite."""
-    array = np.array(value, dtype=np.float64, order="C")
+    array = np.array(as_numbers(name, value), order="C")
     if array.ndim != len(shape) or any(b is not None and a != b for a, b in zip(array.shape, shape, strict=True)):
         wanted = str(tuple("any" if size is None else size for size in shape)).replace("'", "")
         raise ValueError(f"{name} must have shape {wanted}, not {array.shape}")

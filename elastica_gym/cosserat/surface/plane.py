@@ -5,16 +5,21 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..rod.description import three
+
+UNIT = 1e-12
+"""How far the length of a normal may be from 1 for it to be taken as it is"""
+
 
 class Plane:
-    """A plane that does not move.
+    """A plane that does not move by itself.
 
     Parameters
     ----------
     plane_origin : array_like
-        A point of it [m], (3,).
+        A point of it [m], (3,); an array is followed if it changes between runs or callbacks.
     plane_normal : array_like
-        Towards the free side; of any length, (3,).
+        Towards the free side; of any length, (3,). An array of unit length is followed too.
 
     Attributes
     ----------
@@ -27,9 +32,9 @@ class Plane:
     REQUISITE_MODULES: ClassVar[list[type]] = []
 
     def __init__(self, plane_origin: ArrayLike, plane_normal: ArrayLike) -> None:
-        self.origin = np.array(plane_origin, dtype=np.float64).reshape(3, 1)
-        normal = np.array(plane_normal, dtype=np.float64).reshape(3)
+        self.origin = three("plane_origin", plane_origin).reshape(3, 1)
+        normal = three("plane_normal", plane_normal)
         size = float(np.linalg.norm(normal))
-        if not (np.isfinite(size) and size > 0.0):
-            raise ValueError(f"plane_normal must be finite and not zero, not {normal.tolist()}")
-        self.normal = normal / size
+        if size == 0.0:
+            raise ValueError("plane_normal must not be zero")
+        self.normal = normal if abs(size - 1.0) < UNIT else normal / size

@@ -49,6 +49,7 @@ def integrate(
         started = clock.perf_counter()
         time = simulation.advance(stepper.scheme, dt, count, time)
         most = max(1, int(count * ENTRY_TIME / max(clock.perf_counter() - started, 1e-9)))
+        simulation.warn_of_divergence()
         simulation.callbacks.call(time, round(time / dt))
         simulation.clear_loads()
         done += count

@@ -30,6 +30,7 @@ class SymplecticStepper:
         """Take one step from a time, call the callbacks that are due, and return the time after [s]."""
         simulation = systems.simulation
         after = simulation.advance(self.scheme, float(dt), 1, float(time))
+        simulation.warn_of_divergence()
         simulation.callbacks.call(after, round(after / float(dt)))
         simulation.clear_loads()
         return after

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from ...joint import ConnectionBase, FixedJoint
 from ...model import Array
+from ...rod.description import as_number
 
 
 def compute_position_of_point(system: Any, point: ArrayLike, index: int) -> Array:
@@ -46,9 +47,9 @@ class GenericSystemTypeFreeJoint(ConnectionBase):
         self, k: float, nu: float, point_system_one: ArrayLike | None = None,
         point_system_two: ArrayLike | None = None, **kwargs: Any,
     ) -> None:  # fmt: skip
-        self.k, self.nu = float(k), float(nu)
+        self.k, self.nu = as_number("k", k), as_number("nu", nu)
         self.point_system_one, self.point_system_two = (
-            np.zeros(3) if point is None else np.array(point, dtype=np.float64)
+            np.zeros(3) if point is None else np.asarray(point)
             for point in (point_system_one, point_system_two)
         )
 

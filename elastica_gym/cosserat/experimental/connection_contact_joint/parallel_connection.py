@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...by_hand import act_joint
 from ...joint import ConnectionBase, End
 from ...lowering import SceneBuilder
 from ...model import Array
@@ -64,25 +65,25 @@ class SurfaceJointSideBySide(ConnectionBase):
         self.towards = np.stack(towards).transpose(2, 0, 1)
         self.laws = [np.broadcast_to(np.ravel(np.asarray(each, dtype=np.float64)), len(self.towards))
                      for each in (k, nu, k_repulsive, offset_btw_rods)]  # fmt: skip
-        self.n_lowered = 0
+        self._n_lowered = 0
 
     def apply_forces(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
     ) -> None:
-        """Refuse: there is no other implementation than the compiled one."""
-        raise NotImplementedError("SurfaceJointSideBySide acts inside the compiled step; a subclass cannot call it")
+        """Add forces and torques, as the compiled step does."""
+        act_joint(self, system_one, index_one, system_two, index_two)
 
     def apply_torques(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
     ) -> None:
-        """Do nothing: the compiled step adds torques with the forces."""
+        """Do nothing: torques are added with the forces."""
 
     def lower(self, builder: SceneBuilder, ends: End) -> None:
         """Write the next pair."""
-        k, nu, repulsion, offset = (float(each[self.n_lowered]) for each in self.laws)
-        builder.add_side(ends, stiffness=k, damping=nu, repulsion=repulsion, towards=self.towards[self.n_lowered],
-                         offset=offset)  # fmt: skip
-        self.n_lowered += 1
+        pair = self._n_lowered % len(self.towards)
+        k, nu, repulsion, offset = (float(each[pair]) for each in self.laws)
+        builder.add_side(ends, stiffness=k, damping=nu, repulsion=repulsion, towards=self.towards[pair], offset=offset)
+        self._n_lowered += 1
 
 
 def _middles(rod: Any) -> Array:
