@@ -6,10 +6,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import surroundings
+from .contact_utils import (
+    _elements_to_nodes_inplace,
+    _find_slipping_elements,
+    _node_to_element_mass_or_force,
+    _node_to_element_position,
+    _node_to_element_velocity,
+)
 from .external_forces import NoForces
 from .lowering import SceneBuilder
+from .model import Array
+from .not_offered import refuse_methods, refuse_names
 from .rod.description import require_not_negative
-from .rod.strain import quadrature
 
 SURFACE_TOLERANCE = 1e-4
 """Gap below which an element is in contact with a plane [m]"""
@@ -33,6 +41,7 @@ class _OnPlane(NoForces):
         builder.add_plane(system, self.plane)
 
 
+@refuse_methods
 class InteractionPlane(_OnPlane):
     """A plane without friction: answers to the force that presses on it, to penetration and to approach.
 
@@ -52,6 +61,20 @@ class InteractionPlane(_OnPlane):
             stiffness=float(k), damping=float(nu), origin=_triple(plane_origin), normal=_triple(plane_normal),
             surface_tolerance=self.surface_tol,
         )  # fmt: skip
+
+
+class InteractionPlaneRigidBody(InteractionPlane):
+    """A plane without friction for cylinders and spheres; `CylinderPlaneContact` by another name.
+
+    Parameters
+    ----------
+    k, nu, plane_origin, plane_normal
+        As for `InteractionPlane`.
+    """
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write a plane."""
+        builder.add_body_plane(system, self.plane, 0.0)
 
 
 class AnisotropicFrictionalPlane(_OnPlane):
@@ -93,10 +116,9 @@ class SlenderBodyTheory(NoForces):
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Add -4 pi mu l/ln(L/r) (I - t t^T/2) v on each element, half of it to each node."""
-        m, v, t, lengths = system.mass, system.velocity_collection, system.tangents, system.lengths
-        velocity = (m[1:] * v[:, 1:] + m[:-1] * v[:, :-1]) / (m[1:] + m[:-1])
-        size = -4.0 * np.pi * self.dynamic_viscosity * lengths / np.log(lengths.sum() / system.radius)
-        system.external_forces += quadrature(size * (velocity - 0.5 * t * (t * velocity).sum(axis=0)), False)
+        force = slender_body_forces(system.tangents, system.velocity_collection, self.dynamic_viscosity,
+                                    system.lengths, system.radius, system.mass)  # fmt: skip
+        elements_to_nodes_inplace(force, system.external_forces)
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
         """Write a fluid."""
@@ -105,6 +127,30 @@ class SlenderBodyTheory(NoForces):
         builder.add_flow(system, self.dynamic_viscosity)
 
 
+def slender_body_forces(
+    tangents: Array, velocity_collection: Array, dynamic_viscosity: float, lengths: Array, radius: Array, mass: Array
+) -> Array:
+    """Return the drag on each element (Gazzola et al. 2018, eq. 4.13) [N], (3, n)."""
+    velocity = _node_to_element_velocity(mass, velocity_collection)
+    size = -4.0 * np.pi * dynamic_viscosity * lengths / np.log(lengths.sum() / radius)
+    return size * (velocity - 0.5 * tangents * (tangents * velocity).sum(axis=0))
+
+
+def sum_over_elements(input: Array) -> np.float64:
+    """Return the sum of what elements have, (n,)."""
+    return input.sum()
+
+
+# by their names in 0.2.x
+elements_to_nodes_inplace = _elements_to_nodes_inplace
+find_slipping_elements = _find_slipping_elements
+node_to_element_pos_or_vel = _node_to_element_position
+nodes_to_elements = _node_to_element_mass_or_force
+
+
 def _triple(value: ArrayLike) -> tuple[float, float, float]:
     a, b, c = np.ravel(np.asarray(value, dtype=np.float64)).tolist()
     return a, b, c
+
+
+__getattr__ = refuse_names(__name__)

@@ -16,7 +16,9 @@ ROD = dict(base_length=0.3, base_radius=0.01, density=1000.0, youngs_modulus=1e5
 
 
 def simulator(lib):
-    class Simulator(lib.BaseSystemCollection, lib.Constraints, lib.Forcing, lib.CallBacks, lib.Damping, lib.Connections):
+    class Simulator(
+        lib.BaseSystemCollection, lib.Constraints, lib.Forcing, lib.CallBacks, lib.Damping, lib.Connections
+    ):
         pass
 
     return Simulator()
@@ -197,15 +199,15 @@ def test_shear_correction_of_0_2():
     rod = make_rod(ours, alpha_c=4.0 / 3.0, shear_modulus=4e4)
     assert rod.shear_matrix[0, 0, 0] == pytest.approx(4.0 / 3.0 * 4e4 * np.pi * 0.01**2)
     assert rod.shear_matrix[2, 2, 0] == make_rod(ours).shear_matrix[2, 2, 0]
-    with pytest.raises(ValueError, match="alpha_c must be a positive number, not 0.0"):
+    with pytest.raises(ValueError, match=r"alpha_c must be a positive number, not 0.0"):
         make_rod(ours, alpha_c=0.0)
 
 
 def test_rods_ignore_unknown_keywords_as_theirs_but_say_so():
     make_rod(theirs, shear_moduli=4e4)
-    with pytest.warns(UserWarning, match="straight_rod ignores the unknown keyword shear_moduli; did you mean shear_mo"):
+    with pytest.warns(UserWarning, match=r"straight_rod ignores the unknown keyword shear_moduli; did you mean shear_"):
         make_rod(ours, shear_moduli=4e4)
-    with pytest.warns(UserWarning, match="ring_rod ignores the unknown keyword colour; it knows n_elements, ring_center"):
+    with pytest.warns(UserWarning, match=r"ring_rod ignores the unknown keyword colour; it knows n_elements, ring_"):
         ours.CosseratRod.ring_rod(8, np.ones(3), Z, Y, colour="red", **ROD)
 
 
@@ -256,5 +258,5 @@ def test_features_that_refuse_unknown_keywords_in_theirs_refuse_them_here(name):
         declare = getattr(sim, given[0])
         declared = declare(*rods, 0, 0) if given[0] == "connect" else declare(rods[0])
         declared.using(getattr(lib, name), **given[1], colour="red")
-        with pytest.raises(TypeError, match="colour|Unable to construct"):
+        with pytest.raises(TypeError, match=r"colour|Unable to construct"):
             sim.finalize()

@@ -1,10 +1,16 @@
 """Small products, rotations and knot theory, beside PyElastica 1.0.0."""
 
+import copy
+import importlib
+import inspect
+
 import numpy as np
 import pytest
 
 import elastica_gym.cosserat as ours
 from elastica_gym.cosserat import _calculus, _linalg, _rotations, transformations
+from elastica_gym.cosserat import utils as our_utils
+from elastica_gym.cosserat.rod import cosserat_rod as our_rods
 
 pytest.importorskip("elastica", reason="pip install 'elastica-gym[bench]'")
 
@@ -12,6 +18,8 @@ from elastica import _calculus as their_calculus
 from elastica import _linalg as their_linalg
 from elastica import _rotations as their_rotations
 from elastica import transformations as their_transformations
+from elastica import utils as their_utils
+from elastica.rod import cosserat_rod as their_rods
 from elastica.rod import knot_theory as their_knots
 
 N = 7
@@ -55,6 +63,128 @@ def test_same_numbers(mine, theirs, name, given):
                        for each in (theirs, mine))  # fmt: skip
     assert np.shape(found) == np.shape(expected)
     assert np.allclose(found, expected, atol=1e-12)
+
+
+# parts of contact, of fluids and of loads, and small things
+
+RADIUS, LENGTHS = np.abs(RNG.standard_normal((2, N - 1))) + 0.1
+MASS = np.abs(RNG.standard_normal(N)) + 0.1
+ROD_ONE, ROD_TWO = (A, RADIUS, LENGTHS), (B + 3.0, RADIUS, LENGTHS)
+TURN = np.ascontiguousarray(np.linalg.qr(M[..., 0])[0])[:, :, None]
+SEGMENT_PAIRS = np.random.default_rng(5).standard_normal((60, 4, 3))
+# some that are parallel, cross, or have their ends nearest
+SEGMENT_PAIRS[:10, 3] = -0.7 * SEGMENT_PAIRS[:10, 1]
+SEGMENT_PAIRS[10:20, 2] += 5.0
+HELPERS = {
+    "contact_utils": [
+        ("_dot_product", (A[:, 0], B[:, 0])), ("_norm", (A[:, 0],)), ("_clip", (0.3, 0.5, 1.0)),
+        ("_clip", (1.3, 0.5, 1.0)), ("_out_of_bounds", (0.3, 0.5, 1.0)), ("_out_of_bounds", (0.7, 0.5, 1.0)),
+        ("_node_to_element_mass_or_force", (A,)), ("_node_to_element_position", (A,)),
+        ("_node_to_element_velocity", (MASS, A)), ("_find_slipping_elements", (A, 0.8)),
+        ("_aabbs_not_intersecting", (np.array([[0.0, 1.0]] * 3), np.array([[0.5, 1.0], [0.9, 2.0], [1.0, 3.0]]))),
+        ("_aabbs_not_intersecting", (np.array([[0.0, 1.0]] * 3), np.array([[0.5, 1.0], [0.9, 2.0], [1.1, 3.0]]))),
+        ("_prune_using_aabbs_rod_rod", (*ROD_ONE, *ROD_TWO)),
+        ("_prune_using_aabbs_rod_rod", (*ROD_ONE, B + 30.0, RADIUS, LENGTHS)),
+        ("_prune_using_aabbs_rod_cylinder", (*ROD_ONE, np.full((3, 1), 1.0), TURN, 0.1, 0.5)),
+        ("_prune_using_aabbs_rod_cylinder", (*ROD_ONE, np.full((3, 1), 30.0), TURN, 0.1, 0.5)),
+        ("_prune_using_aabbs_rod_sphere", (*ROD_ONE, np.full((3, 1), 1.0), TURN, 0.1)),
+        ("_prune_using_aabbs_rod_sphere", (*ROD_ONE, np.full((3, 1), 30.0), TURN, 0.1)),
+        *(("_find_min_dist", tuple(pair)) for pair in SEGMENT_PAIRS),
+        *(("_find_min_dist_cylinder_sphere", tuple(pair[:3])) for pair in SEGMENT_PAIRS[:5]),
+    ],
+    "interaction": [
+        ("sum_over_elements", (S,)),
+        ("slender_body_forces", (np.diff(A) / np.linalg.norm(np.diff(A), axis=0), B, 0.3, LENGTHS, 0.01 * RADIUS,
+                                 MASS)),
+    ],
+    "restart": [("all_equal", ([1, 1, 1],)), ("all_equal", ([1, 2],)), ("all_equal", ([],)), ("all_equal", ([0],))],
+    "utils": [
+        ("perm_parity", ([0, 1, 2],)), ("perm_parity", ([1, 0, 2],)), ("perm_parity", ([3, 0, 1, 2],)),
+        ("perm_parity", ([2, 0, 1, 4, 3],)),
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("module", "name", "given"), [(module, *call) for module, calls in HELPERS.items()
+                                                       for call in calls])  # fmt: skip
+def test_helpers(module, name, given):
+    expected, found = (getattr(importlib.import_module(f"{lib}.{module}"), name)(*copy.deepcopy(given))
+                       for lib in ("elastica", "elastica_gym.cosserat"))  # fmt: skip
+    expected, found = (each if isinstance(each, tuple) else (each,) for each in (expected, found))
+    for one, other in zip(expected, found, strict=True):
+        assert np.shape(one) == np.shape(other) and np.allclose(one, other, atol=1e-12)
+
+
+def test_small_things():
+    for utils in (their_utils, our_utils):
+        spline, points, coefficients = utils._bspline(np.array([0.0, 1.0, -2.0, 3.0, 0.5, 0.0]), 2.0)
+        assert np.allclose(points, [0.0, 2.0 / 3.0, 4.0 / 3.0, 2.0]) and coefficients.size == 6
+        assert spline(1.1) == pytest.approx(0.917390625)
+        assert list(utils.grouper("ABCDEFG", 3)) == [("A", "B", "C"), ("D", "E", "F"), ("G",)]
+        thing = type("Thing", (), {})()
+        utils.extend_instance(thing, type("Mixin", (), {"answer": lambda self: 42}))
+        assert thing.answer() == 42 and type(thing).__name__ == "Thing"
+    for name in ("atol", "rtol"):
+        assert getattr(our_utils.Tolerance, name)() == getattr(their_utils.Tolerance, name)()
+
+
+def test_half_of_an_element_to_each_node():
+    nodes = {}
+    for lib in ("elastica", "elastica_gym.cosserat"):
+        nodes[lib] = B.copy()
+        importlib.import_module(f"{lib}.contact_utils")._elements_to_nodes_inplace(A[:, 1:].copy(), nodes[lib])
+    assert np.allclose(*nodes.values(), atol=1e-15)
+
+
+def test_stages_of_a_rod_in_place():
+    """All that theirs computes in a step, by the functions that scripts import from `rod.cosserat_rod`."""
+    rod = their_rods.CosseratRod.straight_rod(N, np.zeros(3), np.eye(3)[2], np.eye(3)[1], 0.3, 0.01, 1000.0,
+                                              youngs_modulus=1e5)  # fmt: skip
+    rng = np.random.default_rng(3)
+    rod.position_collection += 0.01 * rng.standard_normal((3, N + 1))
+    turn = 0.3 * rng.standard_normal((3, N))
+    rod.director_collection[:] = their_rotations._rotate(rod.director_collection, 1.0, turn)
+    for name in ("velocity_collection", "omega_collection", "external_forces", "external_torques", "rest_kappa"):
+        getattr(rod, name)[:] = rng.standard_normal(getattr(rod, name).shape)
+    functions = ("_compute_internal_forces", "_compute_internal_torques", "_update_accelerations",
+                 "_zeroed_out_external_forces_and_torques")  # fmt: skip
+    results = []
+    for module in (their_rods, our_rods):
+        fields = {name: value.copy() for name, value in vars(rod).items() if isinstance(value, np.ndarray)}
+        written = {name: np.full_like(value, np.nan) for name, value in fields.items() if name in WRITTEN}
+        fields |= written
+        for name in functions:
+            parameters = inspect.signature(getattr(their_rods, name).py_func).parameters
+            getattr(module, name)(*(fields[parameter] for parameter in parameters))
+        results.append(fields)
+    for name, expected in results[0].items():
+        assert np.allclose(results[1][name], expected, rtol=1e-9, atol=1e-9), name
+        assert np.isfinite(results[1][name]).all(), name
+    assert np.array_equal(our_rods._get_z_vector(), their_rods._get_z_vector())
+
+
+WRITTEN = ("lengths", "tangents", "radius", "dilatation", "voronoi_dilatation", "dilatation_rate", "sigma", "kappa",
+           "internal_stress", "internal_couple", "internal_forces", "internal_torques", "acceleration_collection")
+
+
+def test_loads_and_constraints_as_functions():
+    calls = {
+        ("external_forces", "GravityForces", "compute_gravity_forces"): (V, MASS, A),
+        ("external_forces", "EndpointForces", "compute_end_point_forces"): (A, V, -2.0 * V, 0.3, 1.0),
+        ("external_forces", "MuscleTorques", "compute_muscle_torques"):
+            (0.3, S, np.linspace(0.1, 1.0, N), 2.0, 3.0, 0.2, 1.0, V, M, A),
+        ("boundary_conditions", "OneEndFixedBC", "compute_constrain_values"): (A, V, M, L[..., 0]),
+        ("boundary_conditions", "OneEndFixedBC", "compute_constrain_rates"): (A, B),
+    }  # fmt: skip
+    for (module, cls, name), given in calls.items():
+        results = []
+        for lib in ("elastica", "elastica_gym.cosserat"):
+            arguments = copy.deepcopy(given)
+            getattr(getattr(importlib.import_module(f"{lib}.{module}"), cls), name)(*arguments)
+            results.append(arguments)
+        for one, other in zip(*results, strict=True):
+            assert np.allclose(one, other, atol=1e-12), name
+        assert any(not np.array_equal(after, before) for after, before in zip(results[1], given, strict=True)), name
 
 
 def test_inverse_rotation_and_skew():
@@ -205,7 +335,7 @@ def test_link_is_twist_and_writhe():
 
 def test_knot_theory_names_what_it_cannot_take():
     line, normals = LINES["walk"][None], normals_of(LINES["walk"])[None]
-    with pytest.raises(ValueError, match="type_of_additional_segment must be one of .* not 'next_tangents'"):
+    with pytest.raises(ValueError, match=r"type_of_additional_segment must be one of .* not 'next_tangents'"):
         ours.compute_writhe(line, LENGTH, "next_tangents")
     with pytest.raises(ValueError, match="normals of its elements"):
         ours.compute_twist(line, normals[..., :-1])

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..model import Array
+from ..not_offered import refuse_names
 from ..rod.cosserat_rod import TOLERANCE, _unit, _vector
 from ..rod.description import require_positive
 from .rigid_body import RigidBodyBase
@@ -59,3 +60,6 @@ def _perpendicular(normal: Array, axis: Array) -> Array:
     warnings.warn(f"normal is not perpendicular to direction, the cosine between them is {cosine:.3g}: {taken}",
                   UserWarning, stacklevel=3)  # fmt: skip
     return across / np.linalg.norm(across)
+
+
+__getattr__ = refuse_names(__name__)

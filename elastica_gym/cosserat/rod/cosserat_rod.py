@@ -8,10 +8,28 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .._calculus import position_average, position_difference_kernel  # noqa: F401
 from ..keywords import warn_of_unknown
 from ..model import Array
+from ..not_offered import refuse_names
 from . import strain
 from .description import SHEAR_CORRECTION, require_not_negative, require_positive
+from .in_place import (  # noqa: F401
+    _compute_all_dilatations,
+    _compute_bending_twist_strains,
+    _compute_damping_forces,
+    _compute_damping_torques,
+    _compute_dilatation_rate,
+    _compute_geometry_from_state,
+    _compute_internal_bending_twist_stresses_from_model,
+    _compute_internal_forces,
+    _compute_internal_shear_stretch_stresses_from_model,
+    _compute_internal_torques,
+    _compute_shear_stretch_strains,
+    _get_z_vector,
+    _update_accelerations,
+    _zeroed_out_external_forces_and_torques,
+)
 from .rod_base import RodBase
 
 MATERIAL = (
@@ -533,3 +551,6 @@ def _unit(name: str, value: ArrayLike) -> Array:
     size = float(np.linalg.norm(vector))
     require_positive(f"length of {name}", size)
     return vector / size
+
+
+__getattr__ = refuse_names(__name__)

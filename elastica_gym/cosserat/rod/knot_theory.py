@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..model import Array
+from ..not_offered import refuse_names
 
 SEGMENTS = ("next_tangent", "end_to_end", "net_tangent")
 
@@ -221,3 +222,6 @@ def _triangle(a: Array, b: Array, c: Array) -> Array:
 def _unit(vectors: Array) -> Array:
     size = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 1e-300)
+
+
+__getattr__ = refuse_names(__name__)

@@ -1,12 +1,12 @@
 """A plane, for systems to touch."""
 
-from typing import ClassVar
-
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .surface_base import SurfaceBase
 
-class Plane:
+
+class Plane(SurfaceBase):
     """A plane that does not move.
 
     Parameters
@@ -23,8 +23,6 @@ class Plane:
     normal : Array
         Of unit length, (3,).
     """
-
-    REQUISITE_MODULES: ClassVar[list[type]] = []
 
     def __init__(self, plane_origin: ArrayLike, plane_normal: ArrayLike) -> None:
         self.origin = np.array(plane_origin, dtype=np.float64).reshape(3, 1)

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from ...joint import ConnectionBase, End
 from ...lowering import SceneBuilder
 from ...model import Array
+from ...not_offered import refuse_methods
 
 
 def get_connection_vector_straight_straight_rod(
@@ -36,6 +37,7 @@ def get_connection_vector_straight_straight_rod(
             distance - rod_one.radius[one] - rod_two.radius[two])  # fmt: skip
 
 
+@refuse_methods
 class SurfaceJointSideBySide(ConnectionBase):
     """A spring between points of the surfaces of two rods, a damper between their elements, and repulsion.
 
