@@ -9,7 +9,12 @@
 With ``render_mode="rgb_array"``, ``env.render()`` draws pictures.
 """
 
-from .envs import register_all
+from .versions import require_versions
+
+# before what compiles: with another Numba that ends in an error which does not name the cause
+require_versions()
+
+from .envs import register_all  # noqa: E402
 
 __version__ = "0.1.0"
 
