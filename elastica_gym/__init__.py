@@ -9,7 +9,12 @@
 With ``render_mode="rgb_array"``, ``env.render()`` draws pictures. `register` adds tasks of your own.
 """
 
-from .envs import register, register_all
+from .versions import require_versions
+
+# before what compiles: with another Numba that ends in an error which does not name the cause
+require_versions()
+
+from .envs import register, register_all  # noqa: E402
 
 __all__ = ["register", "register_all"]
 __version__ = "0.1.0"

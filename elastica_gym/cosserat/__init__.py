@@ -5,6 +5,9 @@ Two ways lead to the same compiled step. The environments describe rods and surr
 a class of `BaseSystemCollection` and its features, rods, loads, constraints, ``finalize`` and `integrate`.
 """
 
+from . import contact_utils as contact_utils
+from . import typing as typing
+from . import version as version
 from ._calculus import (
     difference_kernel,
     difference_kernel_for_block_structure,
@@ -67,6 +70,7 @@ from .joint import (
 from .kernels.step import advance
 from .model import Control, Model, State, make_control, make_state
 from .modules import BaseSystemCollection, CallBacks, Connections, Constraints, Contact, Damping, Forcing
+from .not_offered import refuse_names
 from .restart import load_state, save_state
 from .rigidbody import Cylinder, RigidBodyBase, Sphere
 from .rod import Rod, stable_time_step
@@ -75,6 +79,7 @@ from .rod.knot_theory import KnotTheory, compute_link, compute_twist, compute_wr
 from .rod.rod_base import RodBase
 from .surface import Plane
 from .surroundings import Wave
+from .systems.protocol import StaticSystemProtocol, SystemProtocol
 from .timestepper import extend_stepper_interface, integrate
 from .timestepper.symplectic_steppers import PEFRL, PositionVerlet
 from .transformations import inv_skew_symmetrize, rotate
@@ -143,6 +148,8 @@ __all__ = [
     "Sphere",
     "SphericalJoint",
     "State",
+    "StaticSystemProtocol",
+    "SystemProtocol",
     "UniformForces",
     "UniformTorques",
     "Wave",
@@ -170,3 +177,5 @@ __all__ = [
     "save_state",
     "stable_time_step",
 ]  # fmt: skip
+
+__getattr__ = refuse_names(__name__)

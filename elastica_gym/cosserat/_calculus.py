@@ -3,6 +3,8 @@
 import numpy as np
 from numba import njit
 
+from .not_offered import refuse_names
+
 
 @njit(cache=True)
 def position_difference_kernel(vector):
@@ -80,3 +82,6 @@ _difference, _average = position_difference_kernel, position_average
 _trapezoidal, _two_point_difference = quadrature_kernel, difference_kernel
 _trapezoidal_for_block_structure = quadrature_kernel_for_block_structure
 _two_point_difference_for_block_structure = difference_kernel_for_block_structure
+
+
+__getattr__ = refuse_names(__name__)

@@ -10,6 +10,7 @@ from numba import njit
 
 from ._linalg import _batch_matmul
 from .joint import get_relative_rotation_two_systems as get_relative_rotation_two_systems
+from .not_offered import refuse_names
 
 
 @njit(cache=True)
@@ -76,3 +77,6 @@ def _inv_skew_symmetrize(matrix):
     for k in range(matrix.shape[2]):
         result[0, k], result[1, k], result[2, k] = matrix[2, 1, k], matrix[0, 2, k], matrix[1, 0, k]
     return result
+
+
+__getattr__ = refuse_names(__name__)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .lowering import SceneBuilder
 from .model import Array
+from .not_offered import refuse_methods
 
 Indices = int | Sequence[int]
 
@@ -74,6 +75,7 @@ class FreeBC(ConstraintBase):
         """Write no rows."""
 
 
+@refuse_methods
 class GeneralConstraint(ConstraintBase):
     """Holds nodes along some axes of the lab, and stops elements from turning about some.
 
@@ -170,6 +172,21 @@ class OneEndFixedBC(FixedConstraint):
         super().__init__(fixed_position, fixed_directors, **kwargs)
         self.fixed_position_collection = self.fixed_positions[0]
         self.fixed_directors_collection = self.fixed_directors[0]
+
+    @staticmethod
+    def compute_constrain_values(
+        position_collection: Array, fixed_position_collection: Array, director_collection: Array,
+        fixed_directors_collection: Array,
+    ) -> None:  # fmt: skip
+        """Put the first node and the first directors back."""
+        position_collection[..., 0] = fixed_position_collection
+        director_collection[..., 0] = fixed_directors_collection
+
+    @staticmethod
+    def compute_constrain_rates(velocity_collection: Array, omega_collection: Array) -> None:
+        """Stop the first node and the first element."""
+        velocity_collection[..., 0] = 0.0
+        omega_collection[..., 0] = 0.0
 
 
 class HelicalBucklingBC(ConstraintBase):

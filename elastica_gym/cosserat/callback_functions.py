@@ -1,7 +1,9 @@
 """Callbacks: what looks at systems while a simulation runs."""
 
 import atexit
+import os
 import pickle
+import sys
 import tempfile
 from collections import defaultdict
 from pathlib import Path
@@ -50,7 +52,9 @@ class ExportCallBack(CallBackBaseClass):
     """Writes time, step, position, directors and velocity to numbered files.
 
     Each file is written beside its place and then moved there, so that a run that is killed loses at
-    most what was collected since the last one. ``simulator.close()`` writes the rest.
+    most what was collected since the last one. ``simulator.close()`` writes the rest. A file ends before
+    the step that is a multiple of ``file_save_interval``, so that an interval of 100 steps gives samples
+    of the steps 0 to 99, 100 to 199 and so on.
 
     Parameters
     ----------
@@ -70,6 +74,13 @@ class ExportCallBack(CallBackBaseClass):
         The seed's name for directory and name in one.
     save_every : int
         The seed's name for ``file_save_interval``.
+
+    Attributes
+    ----------
+    save_path : str
+        Path of the files, to be formatted with a number and the extension.
+    file_count : int
+        Number of the next file.
     """
 
     AVAILABLE_METHOD: ClassVar[list[str]] = ["pickle", "npz", "tempfile"]
@@ -93,38 +104,44 @@ class ExportCallBack(CallBackBaseClass):
             if value < 1:
                 raise ValueError(f"{name} must be at least 1, not {value}")
         self.step_skip, self.file_save_interval, self.method = step_skip, interval, method
-        self.file_count, self._first = initial_file_count, initial_file_count
+        self.file_count = initial_file_count
         if method == "tempfile":
             directory, place = tempfile.mkdtemp(), Path(place).name
-        self._stem = Path(directory, place) if directory is not None else Path(place)
-        self._stem.parent.mkdir(parents=True, exist_ok=True)
+        self.save_path = os.path.join(directory or "", place) + "_{:02d}.{}"
+        Path(self.save_path).parent.mkdir(parents=True, exist_ok=True)
         self._extension = "npz" if method == "npz" else "pkl"
         self.buffer: dict[str, list] = defaultdict(list)
         self.buffer_size = 0
-        self._saved_at = 0
 
     def make_callback(self, system: Any, time: float, current_step: int) -> None:
         """Collect copies of what is now, and write a file when it is time."""
         if current_step % self.step_skip == 0:
+            # called at samples only, and the file may have been due at a step since the last one
+            since = max(0, current_step - self.step_skip)
+            if self.buffer_size and current_step // self.file_save_interval > since // self.file_save_interval:
+                self._dump()
             self.buffer_size += _append(self.buffer, system, time, current_step)
-        if self.buffer_size > self.FILE_SIZE_CUTOFF or current_step - self._saved_at >= self.file_save_interval:
+        is_due = (current_step + 1) % self.file_save_interval == 0
+        if self.buffer_size > self.FILE_SIZE_CUTOFF or (self.buffer_size and is_due):
             self._dump()
-            self._saved_at = current_step
 
     def get_last_saved_path(self) -> str | None:
-        """Return the path of the file that was written last, None if there is none."""
-        return None if self.file_count == self._first else str(self._path(self.file_count - 1))
+        """Return the path of the file before the next one, None if that has the number 0."""
+        return None if self.file_count == 0 else self._path(self.file_count - 1)
 
     def on_close(self) -> None:
         """Write what is left."""
         if self.buffer_size:
             self._dump()
 
-    def _path(self, number: int) -> Path:
-        return self._stem.with_name(f"{self._stem.name}_{number:02d}.{self._extension}")
+    # by its names in 0.3
+    close = clear = on_close
+
+    def _path(self, number: int) -> str:
+        return self.save_path.format(number, self._extension)
 
     def _dump(self) -> None:
-        path = self._path(self.file_count)
+        path = Path(self._path(self.file_count))
         data = {name: np.array(values) for name, values in self.buffer.items()}
         unfinished = path.with_name(path.name + ".part")
         with unfinished.open("wb") as file:
@@ -186,7 +203,7 @@ class RerunCallBack(CallBackBaseClass):
 
 
 def _append(lists: dict, system: Any, time: float, step: int) -> int:
-    """Append copies of a system's motion to lists, and return their size in bytes."""
+    """Append copies of a system's motion to lists, and return their size in memory in bytes."""
     lists["time"].append(time)
     lists["step"].append(step)
     size = 0
@@ -194,5 +211,5 @@ def _append(lists: dict, system: Any, time: float, step: int) -> int:
                             ("velocity", "velocity_collection")):  # fmt: skip
         values = getattr(system, attribute).copy()
         lists[name].append(values)
-        size += values.nbytes
+        size += sys.getsizeof(values)
     return size

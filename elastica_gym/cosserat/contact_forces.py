@@ -1,5 +1,6 @@
 """Contact between systems."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -12,6 +13,25 @@ from .rigidbody import Cylinder, Sphere
 from .rod.description import as_number, three
 from .rod.rod_base import RodBase
 from .surface.plane import Plane
+
+
+def common_check_systems_identity(system_one: Any, system_two: Any) -> None:
+    """Raise TypeError if two systems are the same."""
+    if system_one is system_two:
+        raise TypeError("the first system is the second; this contact is between two")
+
+
+def common_check_systems_different(system_one: Any, system_two: Any) -> None:
+    """Raise TypeError unless two systems are the same."""
+    if system_one is not system_two:
+        raise TypeError("the first system is not the second; this contact is of a system with itself")
+
+
+def common_check_systems_validity(system: Any, allowed_system: Sequence[type]) -> None:
+    """Raise TypeError unless a system is of a type that is allowed."""
+    if not isinstance(system, tuple(allowed_system)):
+        names = " or ".join(each.__name__ for each in allowed_system)
+        raise TypeError(f"a system must be a {names}, not a {type(system).__name__}")
 
 
 class NoContact:
@@ -30,14 +50,28 @@ class NoContact:
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write no rows."""
 
-    def require_systems(self, system_one: Any, system_two: Any) -> None:
-        """Raise TypeError unless these can touch in this way."""
-        for which, system, allowed in (("first", system_one, self.allowed_systems_one),
-                                       ("second", system_two, self.allowed_systems_two)):  # fmt: skip
-            if not isinstance(system, allowed):
+    @property
+    def _allowed_system_one(self) -> list[type]:
+        """What the first system may be; subclasses override it, by its name in 1.0."""
+        return list(self.allowed_systems_one)
+
+    @property
+    def _allowed_system_two(self) -> list[type]:
+        """What the second system may be; subclasses override it, by its name in 1.0."""
+        return list(self.allowed_systems_two)
+
+    def _check_systems_validity(self, system_one: Any, system_two: Any) -> None:
+        """Raise TypeError unless these can touch in this way; subclasses override it, by its name in 1.0."""
+        for which, system, allowed in (("first", system_one, self._allowed_system_one),
+                                       ("second", system_two, self._allowed_system_two)):  # fmt: skip
+            if not isinstance(system, tuple(allowed)):
                 names = " or ".join(each.__name__ for each in allowed)
                 raise TypeError(f"the {which} system of {type(self).__name__} must be a {names}, "
                                 f"not a {type(system).__name__}")  # fmt: skip
+
+    def require_systems(self, system_one: Any, system_two: Any) -> None:
+        """Raise TypeError unless these can touch in this way."""
+        self._check_systems_validity(system_one, system_two)
 
 
 class _Compiled(NoContact):

@@ -7,6 +7,7 @@ import numpy as np
 
 from .lowering import SceneBuilder
 from .model import Array
+from .not_offered import refuse_names
 from .rod.description import require_not_negative
 from .rod.rod_base import RodBase
 
@@ -182,3 +183,6 @@ def _element_mass(rod: Any) -> Array:
     mass[0] += 0.5 * rod.mass[0]
     mass[-1] += 0.5 * rod.mass[-1]
     return mass
+
+
+__getattr__ = refuse_names(__name__)

@@ -6,6 +6,7 @@ by taking the step again without the kinds, one after another: each is what a st
 """
 
 from collections.abc import Callable, Iterator
+from copy import deepcopy
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -178,7 +179,7 @@ def _power(state: State, velocities: list[Array]) -> Array:
 
 def _at(model: Model, state: State, control: Control) -> State:
     """Return a copy of the State with length and curvature at its positions; a step leaves those of half a step ago."""
-    copy = State(*(field.copy() for field in state))
+    copy = deepcopy(state)
     advance(model, copy, control, 0, state.time.size, 0.0, 1)
     return copy
 

@@ -43,7 +43,12 @@ class GravityForces(NoForces):
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Add m g to each node."""
-        system.external_forces += self.acc_gravity[:, None] * system.mass
+        self.compute_gravity_forces(self.acc_gravity, system.mass, system.external_forces)
+
+    @staticmethod
+    def compute_gravity_forces(acc_gravity: Array, mass: Array, external_forces: Array) -> None:
+        """Add m g to forces, (3, n + 1)."""
+        external_forces += acc_gravity[:, None] * mass
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
         """Write constant forces."""
@@ -68,9 +73,18 @@ class EndpointForces(NoForces):
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Add the forces at the ends."""
-        growth = min(1.0, time / self.ramp_up_time) if self.ramp_up_time > 0.0 else 1.0
-        system.external_forces[..., 0] += growth * self.start_force
-        system.external_forces[..., -1] += growth * self.end_force
+        self.compute_end_point_forces(
+            system.external_forces, self.start_force, self.end_force, time, self.ramp_up_time
+        )
+
+    @staticmethod
+    def compute_end_point_forces(
+        external_forces: Array, start_force: Array, end_force: Array, time: float, ramp_up_time: float
+    ) -> None:
+        """Add the forces at the ends to forces, (3, n + 1)."""
+        growth = min(1.0, time / ramp_up_time) if ramp_up_time > 0.0 else 1.0
+        external_forces[..., 0] += growth * start_force
+        external_forces[..., -1] += growth * end_force
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
         """Write a row for each end."""
@@ -251,11 +265,22 @@ class MuscleTorques(NoForces):
 
     def apply_torques(self, system: Any, time: float = 0.0) -> None:
         """Add each couple to the element behind it, and its opposite to the one before."""
-        growth = min(1.0, time / self.ramp_up_time) if self.ramp_up_time > 0.0 else 1.0
-        sine, cosine = self.profiles()
-        angle = self.angular_frequency * time
+        self.compute_muscle_torques(
+            time, self.my_spline, self.s, self.angular_frequency, self.wave_number, self.phase_shift,
+            self.ramp_up_time, self.direction, system.director_collection, system.external_torques,
+        )  # fmt: skip
+
+    @staticmethod
+    def compute_muscle_torques(
+        time: float, my_spline: Array, s: Array, angular_frequency: float, wave_number: float, phase_shift: float,
+        ramp_up_time: float, direction: Array, director_collection: Array, external_torques: Array,
+    ) -> None:  # fmt: skip
+        """Add each couple to the torque, (3, n), of the element behind it, and its opposite to the one before."""
+        growth = min(1.0, time / ramp_up_time) if ramp_up_time > 0.0 else 1.0
+        sine, cosine = wave_profiles(s, my_spline, wave_number, phase_shift)
+        angle = angular_frequency * time
         couple = net_couple(growth * (np.sin(angle) * sine + np.cos(angle) * cosine))
-        system.external_torques += np.einsum("ijk,j->ik", system.director_collection, self.direction) * couple
+        external_torques += np.einsum("ijk,j->ik", director_collection, direction) * couple
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
         """Write a wave."""

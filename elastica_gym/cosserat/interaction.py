@@ -7,12 +7,21 @@ from numpy.typing import ArrayLike
 
 from . import surroundings
 from .by_hand import act
+from .contact_utils import (
+    _elements_to_nodes_inplace,
+    _find_slipping_elements,
+    _node_to_element_mass_or_force,
+    _node_to_element_position,
+    _node_to_element_velocity,
+)
 from .external_forces import NoForces
 from .lowering import SceneBuilder
+from .model import Array
+from .not_offered import refuse_methods, refuse_names
 from .rod.description import as_number, require_not_negative, three
-from .rod.strain import quadrature
 
 
+@refuse_methods
 class InteractionPlane(NoForces):
     """A plane without friction: answers to the force that presses on it, to penetration and to approach.
 
@@ -59,6 +68,20 @@ class InteractionPlane(NoForces):
         builder.add_plane(system, self.plane)
 
 
+class InteractionPlaneRigidBody(InteractionPlane):
+    """A plane without friction for cylinders and spheres; `CylinderPlaneContact` by another name.
+
+    Parameters
+    ----------
+    k, nu, plane_origin, plane_normal
+        As for `InteractionPlane`.
+    """
+
+    def lower(self, builder: SceneBuilder, system: Any) -> None:
+        """Write a plane."""
+        builder.add_body_plane(system, self.plane, 0.0)
+
+
 class AnisotropicFrictionalPlane(InteractionPlane):
     """A plane with anisotropic Coulomb friction (Gazzola et al. 2018, appendix D).
 
@@ -100,10 +123,9 @@ class SlenderBodyTheory(NoForces):
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Add -4 pi mu l/ln(L/r) (I - t t^T/2) v on each element, half of it to each node."""
-        m, v, t, lengths = system.mass, system.velocity_collection, system.tangents, system.lengths
-        velocity = (m[1:] * v[:, 1:] + m[:-1] * v[:, :-1]) / (m[1:] + m[:-1])
-        size = -4.0 * np.pi * self.dynamic_viscosity * lengths / np.log(lengths.sum() / system.radius)
-        system.external_forces += quadrature(size * (velocity - 0.5 * t * (t * velocity).sum(axis=0)), False)
+        force = slender_body_forces(system.tangents, system.velocity_collection, self.dynamic_viscosity,
+                                    system.lengths, system.radius, system.mass)  # fmt: skip
+        elements_to_nodes_inplace(force, system.external_forces)
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
         """Write a fluid."""
@@ -116,8 +138,30 @@ def friction_of(law: Any) -> dict[str, Any]:
     """Return the anisotropic friction of a plane in PyElastica's names, in those of `surroundings.Plane`."""
     return {"slip_tolerance": law.slip_velocity_tol, "static_friction": _triple(law.static_mu_array),
             "kinetic_friction": _triple(law.kinetic_mu_array)}  # fmt: skip
+def slender_body_forces(
+    tangents: Array, velocity_collection: Array, dynamic_viscosity: float, lengths: Array, radius: Array, mass: Array
+) -> Array:
+    """Return the drag on each element (Gazzola et al. 2018, eq. 4.13) [N], (3, n)."""
+    velocity = _node_to_element_velocity(mass, velocity_collection)
+    size = -4.0 * np.pi * dynamic_viscosity * lengths / np.log(lengths.sum() / radius)
+    return size * (velocity - 0.5 * tangents * (tangents * velocity).sum(axis=0))
+
+
+def sum_over_elements(input: Array) -> np.float64:
+    """Return the sum of what elements have, (n,)."""
+    return input.sum()
+
+
+# by their names in 0.2.x
+elements_to_nodes_inplace = _elements_to_nodes_inplace
+find_slipping_elements = _find_slipping_elements
+node_to_element_pos_or_vel = _node_to_element_position
+nodes_to_elements = _node_to_element_mass_or_force
 
 
 def _triple(value: ArrayLike) -> tuple[float, float, float]:
     a, b, c = np.ravel(np.asarray(value, dtype=np.float64)).tolist()
     return a, b, c
+
+
+__getattr__ = refuse_names(__name__)

@@ -7,8 +7,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .contact_forces import NoContact, RodCylinderContact, RodRodContact, RodSelfContact, RodSphereContact
+from .contact_utils import (  # noqa: F401
+    _aabbs_not_intersecting,
+    _clip,
+    _dot_product,
+    _find_min_dist,
+    _norm,
+    _out_of_bounds,
+    _prune_using_aabbs_rod_cylinder,
+    _prune_using_aabbs_rod_rod,
+)
 from .lowering import SceneBuilder
 from .model import Array
+from .not_offered import refuse_names
 from .rigidbody import Sphere
 from .rod.description import as_number, three
 from .rod.rod_base import RodBase
@@ -222,3 +233,9 @@ def _twist(system_one: Any, index_one: Any, system_two: Any, index_two: Any, tor
     """Add a torque of the lab frame to system two, and its opposite to one."""
     system_one.external_torques[..., index_one] -= system_one.director_collection[..., index_one] @ torque
     system_two.external_torques[..., index_two] += system_two.director_collection[..., index_two] @ torque
+
+
+# by their names in 0.2.x
+_prune_using_aabbs_rod_rigid_body = _prune_using_aabbs_rod_cylinder
+
+__getattr__ = refuse_names(__name__)

@@ -261,7 +261,7 @@ class SceneBuilder:
         """Add exponential decay of velocities [1/s]; `Decay` says what the arguments mean."""
         if id(system) in self._body:
             number = self._body[id(system)]
-            self._body_rate[number] += node_rate
+            self._body_rate[number] += np.squeeze(node_rate)
             self._body_turn_rate[number] += element_rate + np.ravel(dilating_rate)
             return
         self._node_rate[self.nodes(system)] += node_rate

@@ -2,12 +2,19 @@
 
 import json
 import os
+from collections.abc import Iterable
+from itertools import groupby, islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 META = "meta.json"
+
+
+def all_equal(iterable: Iterable[Any]) -> bool:
+    """Return whether all that an iterable gives is equal."""
+    return len(list(islice(groupby(iterable), 2))) < 2
 
 
 def save_state(

@@ -20,7 +20,8 @@ def format_vector_shape(vector_collection: ArrayLike) -> Array:
 def format_matrix_shape(matrix_collection: ArrayLike) -> Array:
     """Return matrices side by side, (3, 3, n), from (9,), (3, 3), (9, n), (n, 9), (3, 3, n) or (n, 3, 3).
 
-    Where both ways of reading a shape are open, the first of these is taken.
+    Where both ways of reading a shape are open, the first of these is taken. The axes of (n, 3, 3) are
+    reversed, so that each matrix is transposed, as in PyElastica.
     """
     matrices = np.asarray(matrix_collection, dtype=np.float64)
     shape = matrices.shape
@@ -31,8 +32,8 @@ def format_matrix_shape(matrix_collection: ArrayLike) -> Array:
     if matrices.ndim == 3 and shape[:2] == (3, 3):
         return matrices
     if matrices.ndim == 3 and shape[1:] == (3, 3):
-        return np.ascontiguousarray(np.moveaxis(matrices, 0, 2))
-    raise ValueError(f"matrices must have shape (9,), (3, 3), (9, n) or (3, 3, n), not {shape}")
+        return np.ascontiguousarray(matrices.T)
+    raise ValueError(f"matrices must have shape (9,), (3, 3), (9, n), (n, 9), (3, 3, n) or (n, 3, 3), not {shape}")
 
 
 def skew_symmetrize(vector: ArrayLike) -> Array:
@@ -60,7 +61,7 @@ def rotate(matrix: ArrayLike, scale: float | Array, axis: ArrayLike) -> Array:
     Parameters
     ----------
     matrix : array_like
-        One frame, (9,) or (3, 3), or many, (3, 3, n).
+        One frame, (9,) or (3, 3), or many, (3, 3, n), or what `format_matrix_shape` brings to that.
     scale : float or Array
         One for all or one each, (n,) [rad].
     axis : array_like

@@ -354,8 +354,8 @@ def test_export(tmp_path):
     sim.close()
     files = sorted(path.name for path in tmp_path.iterdir())
     assert files == ["rod_00.npz", "rod_01.npz", "rod_02.npz", "seed_00.pkl"]
-    steps = np.concatenate([np.load(tmp_path / name)["step"] for name in files[:3]])
-    assert steps.tolist() == list(range(0, 121, 10))
+    steps = [np.load(tmp_path / name)["step"].tolist() for name in files[:3]]
+    assert steps == [list(range(0, 50, 10)), list(range(50, 100, 10)), [100, 110, 120]]
     assert np.load(tmp_path / "rod_00.npz")["position"].shape[1:] == (3, 13)
     assert pickle.loads((tmp_path / "seed_00.pkl").read_bytes())["step"].size == 13
 
@@ -403,7 +403,7 @@ ea.integrate(ea.PositionVerlet(), sim, 1e-2, 1000, progress_bar=False)
 def test_a_kill_loses_what_was_not_yet_written_and_no_more(tmp_path):
     killed = subprocess.run([sys.executable, "-c", KILLED, tmp_path], check=False)
     assert killed.returncode == -signal.SIGKILL
-    whole = list(range(0, 101, 10))
+    whole = list(range(0, 91, 10))
     steps = np.concatenate([np.load(path)["step"] for path in sorted(tmp_path.glob("npz_*.npz"))])
     assert steps.tolist() == whole
     steps = [pickle.loads(path.read_bytes())["step"] for path in sorted(tmp_path.glob("pickle_*.pkl"))]

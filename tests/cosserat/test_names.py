@@ -1,10 +1,14 @@
 """Every name that the documentation of 0.2.x and 1.0 gives, by its path, under `elastica_gym.cosserat`."""
 
 import importlib
+import inspect
+import pkgutil
+import typing
 
 import pytest
 
 import elastica_gym.cosserat as library
+from elastica_gym.cosserat.not_offered import METHODS, TABLE, NotOffered
 
 NAMES = """
 _calculus: difference_kernel difference_kernel_for_block_structure position_average position_difference_kernel
@@ -21,6 +25,10 @@ callback_functions: CallBackBaseClass ExportCallBack MyCallBack RerunCallBack
 connections: FixedJoint FreeJoint HingeJoint
 contact_forces: NoContact RodRodContact RodCylinderContact RodSelfContact RodSphereContact RodPlaneContact
 contact_forces: RodPlaneContactWithAnisotropicFriction CylinderPlaneContact
+timestepper: tqdm PositionVerlet PEFRL
+version: VERSION
+surface: SurfaceBase
+utils: _bspline
 dissipation: DamperBase AnalyticalLinearDamper ExponentialDamper LaplaceDissipationFilter RayleighDissipation
 experimental.connection_contact_joint.generic_system_type_connection: GenericSystemTypeFreeJoint
 experimental.connection_contact_joint.generic_system_type_connection: GenericSystemTypeFixedJoint
@@ -80,9 +88,176 @@ def test_all_that_is_exported_exists():
     assert [name for name in library.__all__ if not hasattr(library, name)] == []
 
 
-def test_nothing_of_the_originals_namespace_is_missing():
+# names of 0.2.2 and 0.3.3 that 1.0.0 has no more
+OLDER = """
+_calculus: _get_zero_array
+_elastica_numpy: _elastica_numpy
+boundary_conditions: FreeRod OneEndFixedRod
+experimental.timestepper.explicit_steppers: EulerForward EulerForwardMemory ExplicitStepperMixin RungeKutta4
+experimental.timestepper.explicit_steppers: RungeKutta4Memory
+experimental.timestepper.memory: MemoryCollection make_memory_for_explicit_stepper
+experimental.timestepper.protocol: ExplicitStepperProtocol ExplicitSystemProtocol MemoryProtocol
+external_forces: inplace_substraction
+interaction: AnisotropicFrictionalPlane InteractionPlane anisotropic_friction apply_normal_force_numba
+interaction: apply_normal_force_numba_rigid_body elements_to_nodes_inplace find_slipping_elements
+interaction: node_to_element_pos_or_vel nodes_to_elements
+joint: ExternalContact SelfContact _aabbs_not_intersecting _calculate_contact_forces_rod_rigid_body
+joint: _calculate_contact_forces_rod_rod _calculate_contact_forces_self_rod _clip _dot_product _find_min_dist _norm
+joint: _out_of_bounds _prune_using_aabbs_rod_rigid_body _prune_using_aabbs_rod_rod get_relative_rotation_two_systems
+memory_block.memory_block_rod: make_block_memory_metadata
+memory_block.protocol: BlockProtocol BlockRigidBodyProtocol BlockRodProtocol
+modules.protocol: ConnectedSystemCollectionProtocol ConstrainedSystemCollectionProtocol
+modules.protocol: ContactedSystemCollectionProtocol DampenedSystemCollectionProtocol ForcedSystemCollectionProtocol
+modules.protocol: MixinProtocol SystemCollectionWithCallbackProtocol
+rigidbody.data_structures: _DynamicState _KinematicState _bootstrap_from_data
+rigidbody.protocol: RigidBodyProtocol
+rigidbody.rigid_body: RigidBodyBase
+rod.cosserat_rod: _compute_damping_forces _compute_damping_torques
+rod.data_structures: _DerivativeState _DynamicState _KinematicState _State _bootstrap_from_data
+rod.factory_function: get_shear_modulus
+rod.protocol: CosseratRodProtocol _CosseratRodEnergy
+surface.surface_base: SurfaceBase
+systems: MemoryCollection make_memory_for_explicit_stepper
+systems.analytical: BaseStatefulSystem BaseSymplecticSystem BaseUndampedSimpleHarmonicOscillatorSystem CollectiveSystem
+systems.analytical: DampedSimpleHarmonicOscillatorSystem ScalarExponentialDampedHarmonicOscillatorCollectiveSystem
+systems.analytical: ScalarExponentialDecaySystem SimpleSystemWithPositionsDirectors
+systems.analytical: SymplecticUndampedHarmonicOscillatorCollectiveSystem
+systems.analytical: SymplecticUndampedSimpleHarmonicOscillatorSystem TestDynamicState TestKinematicState
+systems.analytical: make_simple_system_with_positions_directors
+systems.protocol: SlenderBodyGeometryProtocol
+timestepper._stepper_interface: _TimeStepper
+timestepper.explicit_steppers: EulerForward ExplicitStepperMethods ExplicitStepperTag RungeKutta4
+timestepper.explicit_steppers: _SystemCollectionStepper _SystemInstanceStepper
+timestepper.protocol: SymplecticStepperProtocol
+timestepper.symplectic_steppers: SymplecticStepperMethods SymplecticStepperTag _SystemCollectionStepper
+timestepper.symplectic_steppers: _SystemInstanceStepper
+typing: CosseratRodProtocol RigidBodyProtocol State StateType SurfaceBase SurfaceType SymplecticStepperProtocol
+wrappers.base_system: BaseSystemCollection
+wrappers.callbacks: CallBacks _CallBack
+wrappers.connections: Connections _Connect
+wrappers.constraints: Constraints _Constraint
+wrappers.forcing: Forcing _ExtForceTorque
+wrappers.memory_block: construct_memory_block_structures
+"""
+
+
+def modules_of(package):
+    """Return the modules of a package by their paths in it."""
+    found = {"": package}
+    for info in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+        # this one of 1.0.0 cannot be imported: its class has no method resolution order
+        if info.name != "elastica.experimental.interaction":
+            found[info.name.removeprefix(f"{package.__name__}.")] = importlib.import_module(info.name)
+    return found
+
+
+def names_of(module):
+    """Return the names that a module defines, and at the top what the package exports; no type variables."""
+    found = []
+    for name, value in vars(module).items():
+        is_own = getattr(value, "__module__", module.__name__) == module.__name__ or module.__name__ == "elastica"
+        # annotations are strings, unions and the like, which do not know where they were defined
+        is_own &= module.__name__ == "elastica.typing" or name not in vars(importlib.import_module("elastica.typing"))
+        is_helper = inspect.ismodule(value) or isinstance(value, typing.TypeVar) or name.startswith("__") or name == "_"
+        if is_own and not is_helper and name not in {"Any", "logger", "TYPE_CHECKING"}:
+            found.append(name)
+    return found
+
+
+def ours(path):
+    return importlib.import_module(f"elastica_gym.cosserat.{path}" if path else "elastica_gym.cosserat")
+
+
+def is_there_or_refused(path, name):
+    found = getattr(ours(path), name)
+    if not isinstance(found, NotOffered):
+        return True
+    with pytest.raises(NotImplementedError, match=f"{name} of PyElastica is not offered by elastica_gym: ."):
+        found(1, option=2)
+    with pytest.raises(NotImplementedError, match="is not offered"):
+        type("Own", (found,), {})
+    return True
+
+
+def test_every_name_of_the_original_is_there_or_refused():
+    missing, n_walked = [], 0
+    for path, module in modules_of(pytest.importorskip("elastica")).items():
+        for name in names_of(module):
+            n_walked += 1
+            try:
+                assert is_there_or_refused(path, name)
+            except (ImportError, AttributeError):
+                missing.append(f"{path}.{name}")
+    assert missing == []
+    assert n_walked > 250
+
+
+def test_every_public_method_of_the_original_is_there_or_refused():
+    missing, n_walked = [], 0
+    for path, module in modules_of(pytest.importorskip("elastica")).items():
+        for name in names_of(module):
+            theirs, mine = getattr(module, name), getattr(ours(path), name)
+            # protocols are for annotations, and what is not offered has no methods
+            if not isinstance(theirs, type) or isinstance(mine, NotOffered) or getattr(theirs, "_is_protocol", False):
+                continue
+            methods = [each for each, value in vars(theirs).items() if each[0] != "_" and callable(value)]
+            n_walked += len(methods)
+            missing += [f"{path}.{name}.{each}" for each in methods if not hasattr(mine, each)]
+    assert missing == []
+    assert n_walked > 80
+
+
+OLD = [(path, name) for path, _, names in (line.partition(": ") for line in OLDER.strip().splitlines())
+       for name in names.split()]  # fmt: skip
+
+
+@pytest.mark.parametrize(("path", "name"), OLD, ids=[f"{path}.{name}" for path, name in OLD])
+def test_every_name_of_older_ones_is_there_or_refused(path, name):
+    assert is_there_or_refused(path, name)
+
+
+@pytest.mark.parametrize(("path", "name"), [(path, name) for path, names in TABLE.items() for name in names])
+def test_what_is_refused_is_not_there(path, name):
+    assert isinstance(getattr(ours(path), name), NotOffered)
+    assert not isinstance(1, getattr(ours(path), name))
+
+
+def test_refused_methods_say_what_to_use():
+    class Simulator(library.BaseSystemCollection):
+        pass
+
+    for name, instead in METHODS["BaseSystemCollection"].items():
+        with pytest.raises(NotImplementedError, match=f"BaseSystemCollection.{name} of PyElastica is not offered .*"):
+            getattr(Simulator(), name)(0.0)
+        assert instead in getattr(Simulator, name).message
+
+
+def test_unknown_names_stay_unknown():
+    for path in ("", "joint", "collision.AABBCollection", "timestepper"):
+        assert not hasattr(ours(path), "nothing_of_the_kind")
+    with pytest.raises(ModuleNotFoundError):
+        ours("nothing_of_the_kind")
+
+
+def test_modules_that_scripts_use_as_attributes():
     theirs = pytest.importorskip("elastica")
-    # protocols and memory blocks are the original's own machinery
-    machinery = {"MemoryBlockCosseratRod", "MemoryBlockRigidBody", "StaticSystemProtocol", "SystemProtocol"}
-    public = {name for name in dir(theirs) if name[0] != "_" and isinstance(getattr(theirs, name), type)}
-    assert public - machinery - set(library.__all__) == set()
+    attributes = {name for name, value in vars(theirs).items() if inspect.ismodule(value)}
+    mine = {name for name, value in vars(library).items() if inspect.ismodule(value)}
+    machinery = {"collision", "memory_block", "reset_functions_for_block_structure", "np", "os", "_contact_functions",
+                 "_synchronize_periodic_boundary"}  # fmt: skip
+    assert attributes - machinery - mine == set()
+
+
+def test_simulators_of_older_scripts():
+    class Simulator(library.BaseSystemCollection, library.CallBacks):
+        pass
+
+    sim = Simulator()
+    # nothing to close yet
+    sim.close()
+    sim.override_allowed_types((library.Sphere,))
+    with pytest.raises(TypeError, match="a simulator holds Sphere; not Plane"):
+        sim.append(library.Plane([0, 0, 0], [0, 0, 1]))
+    sim.append(library.Sphere([0, 0, 0], 0.1, 1000.0))
+    assert list(sim.final_systems()) == [sim[0]]
+    assert isinstance(sim[0], library.SystemProtocol) and not isinstance(1, library.StaticSystemProtocol)

@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..not_offered import refuse_methods
 from ..rigidbody.rigid_body import RigidBodyBase
 from ..rod.cosserat_rod import CosseratRod
-from ..surface.plane import Plane
+from ..surface.surface_base import SurfaceBase
 from .declaration import Declaration
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ FEATURES = {
 """Which class a simulator must be derived from to have a method"""
 
 
+@refuse_methods
 class BaseSystemCollection(MutableSequence):
     """A list of rods, rigid bodies and surfaces; derive your simulator from it and the features you use.
 
@@ -32,7 +34,7 @@ class BaseSystemCollection(MutableSequence):
     """
 
     def __init__(self) -> None:
-        self.allowed_sys_types: tuple[type, ...] = (CosseratRod, RigidBodyBase, Plane)
+        self.allowed_sys_types: tuple[type, ...] = (CosseratRod, RigidBodyBase, SurfaceBase)
         self._systems: list[Any] = []
         # by the identity of each system: a search through them would make many rods slow to declare
         self._places: dict[int, int] = {}
@@ -96,9 +98,20 @@ class BaseSystemCollection(MutableSequence):
         """Allow one more type of systems."""
         self.extend_allowed_types((additional_types,))
 
+    def override_allowed_types(self, allowed_types: tuple[type, ...]) -> None:
+        """Allow these types of systems and no others."""
+        self.allowed_sys_types = tuple(allowed_types)
+
+    # by its name in 1.0
+    _override_allowed_types = override_allowed_types
+
     def systems(self) -> Iterator[Any]:
         """Return an iterator over all systems."""
         return iter(self._systems)
+
+    def final_systems(self) -> Iterator[Any]:
+        """Return an iterator over the systems that move."""
+        return (system for system in self._systems if isinstance(system, CosseratRod | RigidBodyBase))
 
     def get_system_index(self, system: Any) -> int:
         """Return where a system is, or the index that was given.
@@ -188,8 +201,9 @@ class BaseSystemCollection(MutableSequence):
         self.simulation.callbacks.call(time, current_step)
 
     def close(self) -> None:
-        """Tell callbacks that the simulation is over."""
-        self.simulation.callbacks.close()
+        """Tell callbacks that the simulation is over; before ``finalize`` there are none."""
+        if self._simulation is not None:
+            self._simulation.callbacks.close()
 
     def __getstate__(self) -> dict[str, Any]:
         if self._simulation is not None:

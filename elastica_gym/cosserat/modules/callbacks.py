@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..callback_functions import CallBackBaseClass
+from ..not_offered import refuse_names
 from .declaration import Declaration
 
 if TYPE_CHECKING:
@@ -35,3 +36,6 @@ class CallBacks(_Collection):
         declaration = self._declare("callbacks", "callback", CallBackBaseClass, *each)
         declaration.observed = observed
         return declaration
+
+
+__getattr__ = refuse_names(__name__)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..joint import ConnectionBase
+from ..not_offered import refuse_names
 from ..rod.description import as_indices
 from .declaration import Declaration
 
@@ -53,3 +54,6 @@ class Connections(_Collection):
         declaration = self._declare("connections", "joint", ConnectionBase, first_rod, second_rod)
         declaration.indices = (first_connect_idx, second_connect_idx)
         return declaration
+
+
+__getattr__ = refuse_names(__name__)

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from ..boundary_conditions import ConstraintBase
+from ..not_offered import refuse_names
 from .declaration import Declaration
 
 if TYPE_CHECKING:
@@ -17,3 +18,6 @@ class Constraints(_Collection):
     def constrain(self, system: Any) -> Declaration:
         """Announce a constraint of a system; say which by ``using(cls, *args, constrained_position_idx=..., ...)``."""
         return self._declare("constraints", "constraint", ConstraintBase, system)
+
+
+__getattr__ = refuse_names(__name__)

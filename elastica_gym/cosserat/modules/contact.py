@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from ..contact_forces import NoContact
+from ..not_offered import refuse_names
 from .declaration import Declaration
 
 if TYPE_CHECKING:
@@ -17,3 +18,6 @@ class Contact(_Collection):
     def detect_contact_between(self, first_system: Any, second_system: Any) -> Declaration:
         """Announce that two systems may touch, or one itself; say how by ``using(cls, *args, **kwargs)``."""
         return self._declare("contacts", "contact", NoContact, first_system, second_system)
+
+
+__getattr__ = refuse_names(__name__)

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from ..dissipation import DamperBase
+from ..not_offered import refuse_names
 from .declaration import Declaration
 
 if TYPE_CHECKING:
@@ -17,3 +18,6 @@ class Damping(_Collection):
     def dampen(self, system: Any) -> Declaration:
         """Announce a damper of a system; say which by ``using(cls, *args, **kwargs)``."""
         return self._declare("damping", "damper", DamperBase, system)
+
+
+__getattr__ = refuse_names(__name__)

@@ -3,6 +3,8 @@
 import inspect
 from typing import Any
 
+from ..keywords import known_keywords, warn_of_unknown
+
 
 class Declaration:
     """What ``simulator.constrain(rod)`` and its like return: tell it which class to use, by ``using``.
@@ -35,6 +37,8 @@ class Declaration:
     def using(self, cls: type, *args: Any, **kwargs: Any) -> "Declaration":
         """Say which class provides the feature, and what it is made with at ``finalize``.
 
+        Keywords that a class of the library ignores, as PyElastica's does, give a warning.
+
         Raises
         ------
         TypeError
@@ -47,6 +51,9 @@ class Declaration:
                             f"it must be derived from {self.base.__name__}")  # fmt: skip
         if self.cls is not None:
             raise RuntimeError(f"this {self.what} already uses {self.cls.__name__}; declare another for {cls.__name__}")
+        known = known_keywords(cls)
+        if known is not None:
+            warn_of_unknown(cls.__name__, kwargs, known)
         self.cls, self.args, self.kwargs = cls, args, kwargs
         return self
 

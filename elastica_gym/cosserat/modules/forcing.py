@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from ..external_forces import NoForces
+from ..not_offered import refuse_names
 from .declaration import Declaration
 
 if TYPE_CHECKING:
@@ -17,3 +18,6 @@ class Forcing(_Collection):
     def add_forcing_to(self, system: Any) -> Declaration:
         """Announce a load on a system; say which by ``using(cls, *args, **kwargs)``."""
         return self._declare("forcing", "load", NoForces, system)
+
+
+__getattr__ = refuse_names(__name__)

@@ -1,9 +1,13 @@
 """A rigid cylinder."""
 
+import warnings
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..rod.cosserat_rod import _unit, _vector
+from ..model import Array
+from ..not_offered import refuse_names
+from ..rod.cosserat_rod import TOLERANCE, _unit, _vector
 from ..rod.description import require_positive
 from .rigid_body import RigidBodyBase
 
@@ -18,7 +22,8 @@ class Cylinder(RigidBodyBase):
     direction : array_like
         From its first end to its second, d3; of any length, (3,).
     normal : array_like
-        d1, perpendicular to ``direction``; of any length, (3,).
+        Towards d1; of any length, (3,). Of one that is not perpendicular to ``direction`` the perpendicular
+        part is taken, and for one along it any perpendicular, with a warning.
     base_length, base_radius : float
         [m]
     density : float
@@ -31,9 +36,8 @@ class Cylinder(RigidBodyBase):
     ) -> None:  # fmt: skip
         for name, value in (("base_length", base_length), ("base_radius", base_radius), ("density", density)):
             require_positive(name, value)
-        d3, d1 = _unit("direction", direction), _unit("normal", normal)
-        if abs(float(d1 @ d3)) > 1e-8:
-            raise ValueError(f"normal must be perpendicular to direction; the cosine between them is {d1 @ d3:.3g}")
+        d3 = _unit("direction", direction)
+        d1 = _perpendicular(_unit("normal", normal), d3)
         self.length, self.radius, self.density = (np.float64(each) for each in (base_length, base_radius, density))
         self.volume = np.pi * self.radius**2 * self.length
         self.mass = self.density * self.volume
@@ -41,3 +45,21 @@ class Cylinder(RigidBodyBase):
         inertia = np.array([across, across, 0.5 * self.mass * self.radius**2])
         centre = _vector("start", start) + 0.5 * self.length * d3
         self._set_up(centre, np.array([d1, np.cross(d3, d1), d3]), inertia)
+
+
+def _perpendicular(normal: Array, axis: Array) -> Array:
+    """Return the unit vector across an axis that is nearest to a normal, and warn unless it is the normal."""
+    cosine = float(normal @ axis)
+    if abs(cosine) <= TOLERANCE:
+        return normal
+    across = normal - cosine * axis
+    is_parallel = float(np.linalg.norm(across)) <= TOLERANCE
+    if is_parallel:
+        across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    taken = "another perpendicular is taken" if is_parallel else "its perpendicular part is taken"
+    warnings.warn(f"normal is not perpendicular to direction, the cosine between them is {cosine:.3g}: {taken}",
+                  UserWarning, stacklevel=3)  # fmt: skip
+    return across / np.linalg.norm(across)
+
+
+__getattr__ = refuse_names(__name__)

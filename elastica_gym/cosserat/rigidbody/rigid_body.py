@@ -1,7 +1,7 @@
 """What all rigid bodies have in common."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -52,8 +52,10 @@ class RigidBodyBase:
         Its inverse, (3, 3, 1), computed when read.
     acceleration_collection, alpha_collection : Array
         Accelerations by the loads of the last kick [m/s^2], [rad/s^2], (3, 1), computed when read.
-    mass, volume, density, length, radius : float
-        [kg], [m^3], [kg/m^3], [m], [m]
+    mass, volume, density : np.float64 or Array
+        [kg], [m^3], [kg/m^3]; from ``finalize`` on arrays of shape (1,), which cannot be written.
+    length, radius : np.float64
+        [m]
     """
 
     REQUISITE_MODULES: ClassVar[list[type]] = []
@@ -70,11 +72,11 @@ class RigidBodyBase:
     external_torques = Field()
     mass_second_moment_of_inertia = Field()
 
-    density: float
-    volume: float
-    length: float
-    radius: float
-    mass: float
+    density: Any
+    volume: Any
+    length: np.float64
+    radius: np.float64
+    mass: Any
 
     def _set_up(self, position: Array, directors: Array, inertia: Array) -> None:
         self._fields: dict[str, Array] = {name: np.zeros((3, 1)) for name in (
@@ -103,14 +105,25 @@ class RigidBodyBase:
         """Return the centre of mass [m], (3,)."""
         return self.position_collection[..., 0].copy()
 
-    def compute_translational_energy(self) -> float:
-        """Return m v^2/2 [J]."""
-        return 0.5 * self.mass * float((self.velocity_collection**2).sum())
+    def compute_translational_energy(self) -> Any:
+        """Return m v^2/2 [J]; like the mass, an array of shape (1,) from ``finalize`` on."""
+        return 0.5 * self.mass * (self.velocity_collection**2).sum()
 
-    def compute_rotational_energy(self) -> float:
+    def compute_rotational_energy(self) -> np.float64:
         """Return w . J w/2 [J]."""
         w = self.omega_collection[:, 0]
-        return 0.5 * float(w @ self.mass_second_moment_of_inertia[..., 0] @ w)
+        return 0.5 * (w @ self.mass_second_moment_of_inertia[..., 0] @ w)
+
+    def compute_internal_forces_and_torques(self, time: float) -> None:
+        """Do nothing: a rigid body has none."""
+
+    def update_accelerations(self, time: float, dt: float) -> None:
+        """Do nothing: the accelerations are computed from the loads when read."""
+
+    def zeroed_out_external_forces_and_torques(self, time: float) -> None:
+        """Clear the loads."""
+        self.external_forces[:] = 0.0
+        self.external_torques[:] = 0.0
 
     def _lowered(self) -> LoweredBody:
         """Return what a Model needs to know.
@@ -124,7 +137,7 @@ class RigidBodyBase:
         if np.count_nonzero(J) > np.count_nonzero(np.diag(J)):
             raise ValueError("mass_second_moment_of_inertia must be diagonal")
         return LoweredBody(
-            length=self._axis_length, radius=self.radius, mass=self.mass, inertia=np.diag(J).copy(),
+            length=self._axis_length, radius=self.radius, mass=float(np.squeeze(self.mass)), inertia=np.diag(J).copy(),
             centre=self.position_collection[:, 0], directors=self.director_collection[..., 0],
         )  # fmt: skip
 
@@ -138,3 +151,12 @@ class RigidBodyBase:
         for name, target in memory.items():
             target[...] = self._fields[name]
         self._fields = {**self._fields, **memory}
+        for name in ("mass", "volume", "density"):
+            setattr(self, name, _constant(getattr(self, name)))
+
+
+def _constant(value: Any) -> Array:
+    """Return a number as an array of shape (1,) that cannot be written."""
+    array = np.array(value, dtype=np.float64).reshape(1)
+    array.flags.writeable = False
+    return array

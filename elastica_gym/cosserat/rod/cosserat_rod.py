@@ -1,14 +1,35 @@
 """The documented rod: a Cosserat rod with its attributes as arrays, in PyElastica's names."""
 
+import inspect
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
+from .._calculus import position_average, position_difference_kernel  # noqa: F401
+from ..keywords import warn_of_unknown
 from ..model import Array
+from ..not_offered import refuse_names
 from . import strain
 from .description import SHEAR_CORRECTION, as_count, as_number, as_numbers, require_not_negative, require_positive
+from .in_place import (  # noqa: F401
+    _compute_all_dilatations,
+    _compute_bending_twist_strains,
+    _compute_damping_forces,
+    _compute_damping_torques,
+    _compute_dilatation_rate,
+    _compute_geometry_from_state,
+    _compute_internal_bending_twist_stresses_from_model,
+    _compute_internal_forces,
+    _compute_internal_shear_stretch_stresses_from_model,
+    _compute_internal_torques,
+    _compute_shear_stretch_strains,
+    _get_z_vector,
+    _update_accelerations,
+    _zeroed_out_external_forces_and_torques,
+)
 from .rod_base import RodBase
 
 MATERIAL = (
@@ -157,7 +178,8 @@ class CosseratRod(RodBase):
 
     def __init__(
         self, *, position: Array, directors: Array, radius: Array, density: Array, youngs_modulus: float,
-        shear_modulus: float, nu: float, nu_for_torques: float, rest_sigma: Array, rest_kappa: Array, is_ring: bool,
+        shear_modulus: float, alpha_c: float, nu: float, nu_for_torques: float, rest_sigma: Array, rest_kappa: Array,
+        is_ring: bool,
     ) -> None:  # fmt: skip
         n = directors.shape[2]
         self.n_elems, self.n_nodes, self.ring_rod_flag = n, position.shape[1], is_ring
@@ -166,7 +188,7 @@ class CosseratRod(RodBase):
         area = np.pi * radius**2
         second_moment = np.outer([1.0, 1.0, 2.0], area**2 / (4.0 * np.pi))
         before, after = strain.between(length, is_ring)
-        shear = np.outer([SHEAR_CORRECTION * shear_modulus] * 2 + [youngs_modulus], area)
+        shear = np.outer([alpha_c * shear_modulus] * 2 + [youngs_modulus], area)
         bend = np.array([youngs_modulus, youngs_modulus, shear_modulus])[:, None] * second_moment * length
         inertia = density * length * second_moment
         element_mass = density * area * length
@@ -192,10 +214,12 @@ class CosseratRod(RodBase):
         cls, n_elements: int, start: ArrayLike, direction: ArrayLike, normal: ArrayLike, base_length: float,
         base_radius: ArrayLike, density: ArrayLike, nu: float | None = None, youngs_modulus: float | None = None,
         poisson_ratio: float | None = None, *, nu_for_torques: float | None = None, shear_modulus: float | None = None,
-        position: ArrayLike | None = None, directors: ArrayLike | None = None, rest_sigma: ArrayLike | None = None,
-        rest_kappa: ArrayLike | None = None,
+        alpha_c: float = SHEAR_CORRECTION, position: ArrayLike | None = None, directors: ArrayLike | None = None,
+        rest_sigma: ArrayLike | None = None, rest_kappa: ArrayLike | None = None, **unknown: Any,
     ) -> Self:  # fmt: skip
         """Return a straight rod of equal elements, or one through given nodes.
+
+        As in PyElastica, unknown keywords are ignored, but with a warning.
 
         Parameters
         ----------
@@ -215,6 +239,8 @@ class CosseratRod(RodBase):
         youngs_modulus, shear_modulus : float
             Y and G [Pa]. Without G, it follows from ``poisson_ratio`` by the rule of 0.2.x, Y/(1 + ratio),
             with a ratio of 1/2 if ``nu`` is given; with neither it is that of 1.0, Y/3.
+        alpha_c : float
+            Shear correction: the shear stiffness is alpha_c G A. An argument of 0.1.x and 0.2.x.
         position, directors : array_like
             Nodes [m], (3, n + 1), and directors, (3, 3, n), instead of straight ones.
         rest_sigma, rest_kappa : array_like
@@ -225,6 +251,7 @@ class CosseratRod(RodBase):
         ValueError, TypeError
             If an argument cannot be: names it, its value and what is allowed.
         """
+        warn_of_unknown("straight_rod", unknown, _keywords(cls.straight_rod))
         n_elements = as_count("n_elements", n_elements, 2)
         require_positive("base_length", base_length)
         tangent = _unit("direction", direction)
@@ -237,7 +264,7 @@ class CosseratRod(RodBase):
                 raise ValueError(f"start must be the first node of position, {nodes[:, 0]}, not {first[:, 0]}")
         return cls._made(
             nodes, False, normal, base_radius, density, nu, youngs_modulus, poisson_ratio, nu_for_torques,
-            shear_modulus, directors, rest_sigma, rest_kappa,
+            shear_modulus, alpha_c, directors, rest_sigma, rest_kappa,
         )  # fmt: skip
 
     @classmethod
@@ -245,8 +272,9 @@ class CosseratRod(RodBase):
         cls, n_elements: int, ring_center_position: ArrayLike, direction: ArrayLike, normal: ArrayLike,
         base_length: float, base_radius: ArrayLike, density: ArrayLike, nu: float | None = None,
         youngs_modulus: float | None = None, poisson_ratio: float | None = None, *,
-        nu_for_torques: float | None = None, shear_modulus: float | None = None, position: ArrayLike | None = None,
-        directors: ArrayLike | None = None, rest_sigma: ArrayLike | None = None, rest_kappa: ArrayLike | None = None,
+        nu_for_torques: float | None = None, shear_modulus: float | None = None, alpha_c: float = SHEAR_CORRECTION,
+        position: ArrayLike | None = None, directors: ArrayLike | None = None, rest_sigma: ArrayLike | None = None,
+        rest_kappa: ArrayLike | None = None, **unknown: Any,
     ) -> Self:  # fmt: skip
         """Return a closed rod in the plane across ``normal``: a circle, or through given nodes.
 
@@ -255,6 +283,7 @@ class CosseratRod(RodBase):
         towards ``direction`` from there. A ``rest_kappa`` or ``rest_sigma`` that is zero throughout at
         ``finalize`` becomes that of the ring as it is then. The other parameters are those of `straight_rod`.
         """
+        warn_of_unknown("ring_rod", unknown, _keywords(cls.ring_rod))
         n_elements = as_count("n_elements", n_elements, 3)
         require_positive("base_length", base_length)
         if position is None:
@@ -267,14 +296,14 @@ class CosseratRod(RodBase):
             nodes = _array("position", position, (3, n_elements))
         return cls._made(
             nodes, True, normal, base_radius, density, nu, youngs_modulus, poisson_ratio, nu_for_torques,
-            shear_modulus, directors, rest_sigma, rest_kappa,
+            shear_modulus, alpha_c, directors, rest_sigma, rest_kappa,
         )  # fmt: skip
 
     @classmethod
     def _made(
         cls, nodes: Array, is_ring: bool, normal: ArrayLike, radius: ArrayLike, density: ArrayLike, nu: float | None,
         youngs_modulus: float | None, poisson_ratio: float | None, nu_for_torques: float | None,
-        shear_modulus: float | None, directors: ArrayLike | None, rest_sigma: ArrayLike | None,
+        shear_modulus: float | None, alpha_c: float, directors: ArrayLike | None, rest_sigma: ArrayLike | None,
         rest_kappa: ArrayLike | None,
     ) -> Self:  # fmt: skip
         """Check what both constructors take, and make the rod."""
@@ -287,12 +316,13 @@ class CosseratRod(RodBase):
         G = _shear_modulus(youngs_modulus, shear_modulus, poisson_ratio, nu)
         force_nu = 0.0 if nu is None else nu
         torque_nu = force_nu if nu_for_torques is None else nu_for_torques
+        require_positive("alpha_c", alpha_c)
         require_not_negative("nu", force_nu)
         require_not_negative("nu_for_torques", torque_nu)
         return cls(
             position=nodes, directors=_directors(edges, normal, directors), radius=_each("base_radius", radius, n),
-            density=_each("density", density, n), youngs_modulus=float(youngs_modulus), shear_modulus=G, nu=force_nu,
-            nu_for_torques=torque_nu, is_ring=is_ring,
+            density=_each("density", density, n), youngs_modulus=float(youngs_modulus), shear_modulus=G,
+            alpha_c=float(alpha_c), nu=force_nu, nu_for_torques=torque_nu, is_ring=is_ring,
             rest_sigma=np.zeros((3, n)) if rest_sigma is None else _array("rest_sigma", rest_sigma, (3, n)),
             rest_kappa=np.zeros((3, joints)) if rest_kappa is None else _array("rest_kappa", rest_kappa, (3, joints)),
         )  # fmt: skip
@@ -381,6 +411,29 @@ class CosseratRod(RodBase):
         alpha = strain.apply(self.inv_mass_second_moment_of_inertia, self._fields["net_torques"])
         return alpha * self.dilatation
 
+    @property
+    def ghost_elems_idx(self) -> NDArray[np.int32]:
+        """Gaps between rods in a block of memory, of which one rod has none, (0,)."""
+        return np.zeros(0, dtype=np.int32)
+
+    ghost_voronoi_idx = ghost_elems_idx
+
+    # what steps taken by hand call
+
+    def compute_internal_forces_and_torques(self, time: float) -> None:
+        """Do nothing: internal forces and torques are computed when read."""
+
+    def update_accelerations(self, time: float, dt: float) -> None:
+        """Set the accelerations to those of internal loads, of the damping ``nu`` and of loads from outside."""
+        forces, torques = self._fields["net_forces"], self._fields["net_torques"]
+        forces[:] = self.internal_forces - self.damping_forces + self.external_forces
+        torques[:] = self.internal_torques - self.damping_torques + self.external_torques
+
+    def zeroed_out_external_forces_and_torques(self, time: float) -> None:
+        """Clear the loads from outside."""
+        self.external_forces[:] = 0.0
+        self.external_torques[:] = 0.0
+
     # between the rod and its simulation
 
     def _rest_as_built(self) -> None:
@@ -421,6 +474,11 @@ class CosseratRod(RodBase):
         for name, target in memory.items():
             target[...] = self._fields[name]
         self._fields = {**self._fields, **memory}
+
+
+def _keywords(constructor: Callable) -> list[str]:
+    parameters = inspect.signature(constructor).parameters.values()
+    return [p.name for p in parameters if p.kind is not p.VAR_KEYWORD]
 
 
 def _closed(values: Array) -> Array:
@@ -499,3 +557,6 @@ def _unit(name: str, value: ArrayLike) -> Array:
     size = float(np.linalg.norm(vector))
     require_positive(f"length of {name}", size)
     return vector / size
+
+
+__getattr__ = refuse_names(__name__)

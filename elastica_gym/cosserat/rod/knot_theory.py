@@ -1,4 +1,8 @@
-"""Twist, writhe and link of rods (Klenin and Langowski 2000, methods 2a and 1a)."""
+"""Twist, writhe and link of rods (Klenin and Langowski 2000, methods 2a and 1a).
+
+The area that a pair of segments spans on the sphere of directions is computed from two triangles, by the formula
+of Van Oosterom and Strackee 1983. Unlike a sum of arcsines it is exact for segments on one line or in one plane.
+"""
 
 from typing import Protocol
 
@@ -6,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..model import Array
+from ..not_offered import refuse_names
 
 SEGMENTS = ("next_tangent", "end_to_end", "net_tangent")
 
@@ -31,9 +36,10 @@ class KnotTheory:
 
     - ``"next_tangent"``: along the tangents at the ends;
     - ``"end_to_end"``: along the line from the first node to the last;
-    - ``"net_tangent"``: along the line between the mean nodes of the two halves.
+    - ``"net_tangent"``: along the line between the mean nodes of the two halves, of which neither has the
+      middle node of an odd number.
 
-    Anything else adds none.
+    None adds no segments.
     """
 
     position_collection: Array
@@ -41,21 +47,21 @@ class KnotTheory:
     radius: Array
     rest_lengths: Array
 
-    def compute_twist(self) -> float:
+    def compute_twist(self) -> np.float64:
         """Return the twist [turns]."""
         total, _ = compute_twist(self.position_collection[None], self.director_collection[None, 0])
-        return float(total[0])
+        return total[0]
 
-    def compute_writhe(self, type_of_additional_segment: str = "next_tangent") -> float:
+    def compute_writhe(self, type_of_additional_segment: str | None = "next_tangent") -> np.float64:
         """Return the writhe [turns]."""
         length = float(self.rest_lengths.sum())
-        return float(compute_writhe(self.position_collection[None], length, type_of_additional_segment)[0])
+        return compute_writhe(self.position_collection[None], length, type_of_additional_segment)[0]
 
-    def compute_link(self, type_of_additional_segment: str = "next_tangent") -> float:
+    def compute_link(self, type_of_additional_segment: str | None = "next_tangent") -> np.float64:
         """Return the link, twist plus writhe [turns]."""
         length = float(self.rest_lengths.sum())
-        return float(compute_link(self.position_collection[None], self.director_collection[None, 0],
-                                  self.radius[None], length, type_of_additional_segment)[0])  # fmt: skip
+        return compute_link(self.position_collection[None], self.director_collection[None, 0], self.radius[None],
+                            length, type_of_additional_segment)[0]  # fmt: skip
 
 
 def compute_twist(center_line: ArrayLike, normal_collection: ArrayLike) -> tuple[Array, Array]:
@@ -73,10 +79,9 @@ def compute_twist(center_line: ArrayLike, normal_collection: ArrayLike) -> tuple
     total, local : Array
         Twist [turns]: summed, (time,), and between neighbouring elements, (time, n - 1).
     """
-    line, normals = np.asarray(center_line, dtype=float), np.asarray(normal_collection, dtype=float)
-    tangents = np.diff(line, axis=2)
-    tangents /= np.linalg.norm(tangents, axis=1, keepdims=True)
-    normals = normals - tangents * (normals * tangents).sum(axis=1, keepdims=True)
+    line, normals = _line_and_normals(center_line, normal_collection)
+    tangents = _tangents(line)
+    normals = _across(normals, tangents)
     before, after = tangents[..., :-1], tangents[..., 1:]
     carried = _turned(normals[..., :-1], before, after)
     sine = (after * np.cross(carried, normals[..., 1:], axis=1)).sum(axis=1)
@@ -95,7 +100,7 @@ def _turned(vectors: Array, before: Array, after: Array) -> Array:
 
 
 def compute_writhe(
-    center_line: ArrayLike, segment_length: float, type_of_additional_segment: str = "next_tangent"
+    center_line: ArrayLike, segment_length: float, type_of_additional_segment: str | None = "next_tangent"
 ) -> Array:
     """Return the writhe of open curves (Klenin and Langowski 2000, method 1a).
 
@@ -105,7 +110,7 @@ def compute_writhe(
         Nodes over time, (time, 3, n + 1).
     segment_length : float
         Length of the segments that are added at the ends [m].
-    type_of_additional_segment : str
+    type_of_additional_segment : str or None
         As in `KnotTheory`.
 
     Returns
@@ -119,7 +124,7 @@ def compute_writhe(
 
 def compute_link(
     center_line: ArrayLike, normal_collection: ArrayLike, radius: ArrayLike, segment_length: float,
-    type_of_additional_segment: str = "next_tangent",
+    type_of_additional_segment: str | None = "next_tangent",
 ) -> Array:  # fmt: skip
     """Return the link of a centre line and the line at a radius from it along the normals.
 
@@ -133,7 +138,7 @@ def compute_link(
         Radii of elements over time, (time, n).
     segment_length : float
         Length of the segments that are added at the ends [m].
-    type_of_additional_segment : str
+    type_of_additional_segment : str or None
         As in `KnotTheory`.
 
     Returns
@@ -141,27 +146,48 @@ def compute_link(
     Array
         Link [turns], (time,).
     """
-    line, normals = np.asarray(center_line, dtype=float), np.asarray(normal_collection, dtype=float)
-    offset = np.asarray(radius, dtype=float)[:, None, :] * normals
-    # a node has the normal of the element that it begins, the last that of the element it ends
-    other = line + np.concatenate([offset, offset[..., -1:]], axis=2)
+    line, normals = _line_and_normals(center_line, normal_collection)
+    offset = np.asarray(radius, dtype=float)[:, None, :] * _across(normals, _tangents(line))
+    # a node has the normal of the element that it ends, the first that of the element it begins
+    other = line + np.concatenate([offset[..., :1], offset], axis=2)
     ends = [_lengthened(line, segment_length, type_of_additional_segment)]
     ends.append(_lengthened_like(other, ends[0]) if ends[0].shape != line.shape else other)
     return np.array([_gauss(one.T, two.T) for one, two in zip(*ends, strict=True)])
 
 
-def _lengthened(line: Array, length: float, kind: str) -> Array:
+def _line_and_normals(center_line: ArrayLike, normal_collection: ArrayLike) -> tuple[Array, Array]:
+    line, normals = np.asarray(center_line, dtype=float), np.asarray(normal_collection, dtype=float)
+    if line.ndim != 3 or normals.shape != (line.shape[0], 3, line.shape[2] - 1):
+        raise ValueError("center_line must be nodes of an open rod, (time, 3, n + 1), and normal_collection normals "
+                         f"of its elements, (time, 3, n), not {line.shape} and {normals.shape}")  # fmt: skip
+    return line, normals
+
+
+def _tangents(line: Array) -> Array:
+    edges = np.diff(line, axis=2)
+    return edges / np.linalg.norm(edges, axis=1, keepdims=True)
+
+
+def _across(normals: Array, tangents: Array) -> Array:
+    """Return the parts of normals across tangents, of unit length."""
+    across = normals - tangents * (normals * tangents).sum(axis=1, keepdims=True)
+    return across / np.linalg.norm(across, axis=1, keepdims=True)
+
+
+def _lengthened(line: Array, length: float, kind: str | None) -> Array:
     """Return curves with a segment added at each end, (time, 3, n + 1) to (time, 3, n + 3)."""
-    if kind not in SEGMENTS:
+    if kind is None:
         return line
-    half = line.shape[2] // 2
+    if kind not in SEGMENTS:
+        raise ValueError(f"type_of_additional_segment must be one of {SEGMENTS} or None, not {kind!r}")
     if kind == "next_tangent":
         first, last = line[..., 0] - line[..., 1], line[..., -1] - line[..., -2]
     elif kind == "end_to_end":
         last = line[..., -1] - line[..., 0]
         first = -last
     else:
-        last = line[..., half:].mean(axis=2) - line[..., :half].mean(axis=2)
+        half = line.shape[2] // 2
+        last = line[..., -half:].mean(axis=2) - line[..., :half].mean(axis=2)
         first = -last
     first, last = (length * d / np.linalg.norm(d, axis=1, keepdims=True) for d in (first, last))
     return np.concatenate([(line[..., 0] + first)[..., None], line, (line[..., -1] + last)[..., None]], axis=2)
@@ -174,28 +200,28 @@ def _lengthened_like(line: Array, other: Array) -> Array:
     return np.concatenate([first[..., None], line, last[..., None]], axis=2)
 
 
-def _gauss(one: Array, two: Array | None = None) -> float:
+def _gauss(one: Array, two: Array | None = None) -> np.float64:
     """Return the Gauss integral over 4 pi of two polygons, or of one with itself, nodes (n, 3)."""
-    itself = two is None
     other = one if two is None else two
-    r13 = other[None, :-1] - one[:-1, None]
-    r14 = other[None, 1:] - one[:-1, None]
-    r23 = other[None, :-1] - one[1:, None]
-    r24 = other[None, 1:] - one[1:, None]
-    r12 = np.broadcast_to((one[1:] - one[:-1])[:, None], r13.shape)
-    r34 = np.broadcast_to((other[1:] - other[:-1])[None], r13.shape)
-    normals = [_unit(np.cross(a, b)) for a, b in ((r13, r14), (r14, r24), (r24, r23), (r23, r13))]
-    area = sum(np.arcsin(np.clip((a * b).sum(axis=-1), -1.0, 1.0))
-               for a, b in zip(normals, [*normals[1:], normals[0]], strict=True))  # fmt: skip
-    sign = np.sign((np.cross(r34, r12) * r13).sum(axis=-1))
-    integral = area * sign
-    if itself:
+    start, end = one[:-1, None], one[1:, None]
+    r13, r14, r24, r23 = (_unit(r) for r in (other[:-1] - start, other[1:] - start, other[1:] - end, other[:-1] - end))
+    area = _triangle(r13, r24, r14) + _triangle(r13, r23, r24)
+    if two is None:
         # a segment and its neighbours lie in a plane: no area, but for rounding
-        i, j = np.indices(integral.shape)
-        integral = np.where(np.abs(i - j) > 1, integral, 0.0)
-    return float(integral.sum() / (4.0 * np.pi))
+        i, j = np.indices(area.shape)
+        area = np.where(np.abs(i - j) > 1, area, 0.0)
+    return area.sum() / (4.0 * np.pi)
+
+
+def _triangle(a: Array, b: Array, c: Array) -> Array:
+    """Return the signed area of triangles on the unit sphere, of corners (..., 3)."""
+    volume = (a * np.cross(b, c)).sum(axis=-1)
+    return 2.0 * np.arctan2(volume, 1.0 + (a * b).sum(axis=-1) + (b * c).sum(axis=-1) + (c * a).sum(axis=-1))
 
 
 def _unit(vectors: Array) -> Array:
     size = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 1e-300)
+
+
+__getattr__ = refuse_names(__name__)

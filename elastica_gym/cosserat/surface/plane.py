@@ -1,17 +1,16 @@
 """A plane, for systems to touch."""
 
-from typing import ClassVar
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..rod.description import three
+from .surface_base import SurfaceBase
 
 UNIT = 1e-12
 """How far the length of a normal may be from 1 for it to be taken as it is"""
 
 
-class Plane:
+class Plane(SurfaceBase):
     """A plane that does not move by itself.
 
     Parameters
@@ -28,8 +27,6 @@ class Plane:
     normal : Array
         Of unit length, (3,).
     """
-
-    REQUISITE_MODULES: ClassVar[list[type]] = []
 
     def __init__(self, plane_origin: ArrayLike, plane_normal: ArrayLike) -> None:
         self.origin = three("plane_origin", plane_origin).reshape(3, 1)

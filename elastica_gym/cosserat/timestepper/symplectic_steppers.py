@@ -4,12 +4,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..not_offered import refuse_methods, refuse_names
 from ..scene import Scheme
 
 if TYPE_CHECKING:
     from ..modules.base_system import BaseSystemCollection
 
 
+@refuse_methods
 class SymplecticStepper:
     """Base class of time steppers.
 
@@ -68,3 +70,6 @@ class PEFRL(SymplecticStepper):
         self.scheme = Scheme(
             drifts=np.array([xi, chi, 1.0 - 2.0 * (xi + chi), chi, xi]), kicks=np.array([outer, lam, lam, outer])
         )
+
+
+__getattr__ = refuse_names(__name__)

@@ -9,6 +9,7 @@ from ...by_hand import act_joint
 from ...joint import ConnectionBase, End
 from ...lowering import SceneBuilder
 from ...model import Array
+from ...not_offered import refuse_methods
 
 
 def get_connection_vector_straight_straight_rod(
@@ -37,6 +38,7 @@ def get_connection_vector_straight_straight_rod(
             distance - rod_one.radius[one] - rod_two.radius[two])  # fmt: skip
 
 
+@refuse_methods
 class SurfaceJointSideBySide(ConnectionBase):
     """A spring between points of the surfaces of two rods, a damper between their elements, and repulsion.
 

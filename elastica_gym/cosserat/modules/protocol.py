@@ -1,0 +1,19 @@
+"""Simulators and declarations by PyElastica's names for annotations."""
+
+from .base_system import BaseSystemCollection
+from .callbacks import CallBacks
+from .connections import Connections
+from .constraints import Constraints
+from .contact import Contact
+from .damping import Damping
+from .declaration import Declaration
+from .forcing import Forcing
+
+ModuleProtocol = MixinProtocol = Declaration
+SystemCollectionProtocol = BaseSystemCollection
+SystemCollectionWithCallbackProtocol = CallBacks
+ConnectedSystemCollectionProtocol = Connections
+ConstrainedSystemCollectionProtocol = Constraints
+ContactedSystemCollectionProtocol = Contact
+DampenedSystemCollectionProtocol = Damping
+ForcedSystemCollectionProtocol = Forcing

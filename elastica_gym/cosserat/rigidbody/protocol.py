@@ -1,0 +1,5 @@
+"""Rigid bodies by their name for annotations in 0.3."""
+
+from .rigid_body import RigidBodyBase
+
+RigidBodyProtocol = RigidBodyBase

@@ -1,0 +1,37 @@
+"""What a simulator asks of systems, for annotations and `isinstance`."""
+
+from typing import ClassVar, Protocol, runtime_checkable
+
+from ..model import Array
+
+
+@runtime_checkable
+class StaticSystemProtocol(Protocol):
+    """What may be appended to a simulator: also surfaces."""
+
+    REQUISITE_MODULES: ClassVar[list[type]]
+
+
+@runtime_checkable
+class SystemProtocol(StaticSystemProtocol, Protocol):
+    """What moves: rods and rigid bodies."""
+
+    def compute_internal_forces_and_torques(self, time: float) -> None:
+        """Compute internal loads."""
+
+    def update_accelerations(self, time: float, dt: float) -> None:
+        """Compute accelerations."""
+
+    def zeroed_out_external_forces_and_torques(self, time: float) -> None:
+        """Clear loads."""
+
+
+class SlenderBodyGeometryProtocol(Protocol):
+    """What moves along a centre line."""
+
+    position_collection: Array
+    director_collection: Array
+    radius: Array
+
+
+SymplecticSystemProtocol = SystemProtocol

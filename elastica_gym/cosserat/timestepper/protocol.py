@@ -1,0 +1,5 @@
+"""Time steppers by PyElastica's names for annotations."""
+
+from .symplectic_steppers import SymplecticStepper
+
+StepperProtocol = SymplecticStepperProtocol = SymplecticStepper

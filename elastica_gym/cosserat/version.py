@@ -1,0 +1,8 @@
+"""The version of this library, by its name in PyElastica."""
+
+from importlib.metadata import PackageNotFoundError, version
+
+try:
+    VERSION = version("elastica-gym")
+except PackageNotFoundError:
+    VERSION = "unknown"

@@ -1,0 +1,52 @@
+"""Whether the packages that are installed have versions that this one works with, as `pyproject.toml` says."""
+
+import re
+import warnings
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, requires, version
+
+CHECKED = ("numpy", "numba", "gymnasium")
+Version = tuple[int, ...]
+
+
+def require_versions() -> None:
+    """Raise ImportError if a package is older than the range that was tried, and warn if it is newer.
+
+    Raises
+    ------
+    ImportError
+        Names the package, its version, the range, and the command that mends it.
+    """
+    try:
+        ranges = _ranges(requires("elastica-gym") or [])
+    except PackageNotFoundError:
+        # run from its folder without having been installed: nothing says what it needs
+        return
+    require_within(ranges, {name: version(name) for name in ranges})
+
+
+def require_within(ranges: Mapping[str, str], installed: Mapping[str, str]) -> None:
+    """Raise ImportError or warn of installed versions outside of ranges such as ``>=2.0,<3``."""
+    for name, range_ in ranges.items():
+        found = _parts(installed[name])
+        lowest, bound = (re.search(sign + r"\s*([\d.]+)", range_) for sign in (">=", "<"))
+        allowed = f"{name}{range_}"
+        message = f"elastica_gym works with {allowed}, not {installed[name]}; mend it by: pip install '{allowed}'"
+        if lowest and found < _parts(lowest[1]):
+            raise ImportError(message)
+        if bound and found >= _parts(bound[1]):
+            warnings.warn(f"{message} (or go on untried)", RuntimeWarning, stacklevel=4)
+
+
+def _ranges(requirements: list[str]) -> dict[str, str]:
+    """Return the ranges of the packages that are checked, from lines such as ``numba<0.69,>=0.62``."""
+    split = (re.fullmatch(r"([\w.-]+)\s*([^;]*)", line) for line in requirements)
+    return {match[1]: match[2].strip() for match in split if match and match[1] in CHECKED}
+
+
+def _parts(text: str) -> Version:
+    """Return 2.4.0rc1 as (2, 4, 0), without zeros at the end: those of 2.0 and 2.0.0 are the same."""
+    numbers = [int(part) for part in re.match(r"[\d.]*", text)[0].strip(".").split(".") if part]  # type: ignore[index]
+    while numbers and numbers[-1] == 0:
+        numbers.pop()
+    return tuple(numbers)
