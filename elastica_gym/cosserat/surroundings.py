@@ -73,6 +73,9 @@ class Contact:
     approach, and never pulls. Friction is ``slip_damping`` times the slip, up to ``friction`` times
     the normal force (Coulomb's law; Preclik, Popa and Ruede 2011): what sticks creeps by the force
     it bears over ``slip_damping``, which must stay below the lighter one's mass over the time step.
+    Where nodes of rods meet, up to four pairs of elements touch: with m the mass of a node and dt the
+    time step, ``stiffness`` below m/(2 dt^2) and ``damping`` below m/(4 dt) are stable. Radii are
+    those at rest.
 
     Attributes
     ----------

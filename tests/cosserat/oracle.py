@@ -280,9 +280,8 @@ def _load(rod: Any, k: int, s: float, f: Array) -> None:
 def _law(contact: Contact, *, friction: bool) -> dict[str, float]:
     if not friction:
         return {"k": contact.stiffness, "nu": contact.damping}
-    # friction is of half a contact there, so its slip damping is half of ours
     return {"k": contact.stiffness, "nu": contact.damping, "friction_coefficient": contact.friction,
-            "velocity_damping_coefficient": 0.5 * contact.slip_damping}  # fmt: skip
+            "velocity_damping_coefficient": contact.slip_damping}  # fmt: skip
 
 
 def _body(cylinder: Cylinder, corrected: bool) -> ea.Cylinder:

@@ -41,8 +41,8 @@ def rod_across(ratio: float, place: float, direction: Array, centre: Array) -> R
     """Return a straight rod whose point ``place`` elements from its middle is at ``centre``."""
     length = N * ratio * R
     start, normal = centre - (0.5 + place / N) * length * direction, np.cross(direction, X + 2.0 * Y + Z)
-    return Rod.straight(N, start=tuple(start), direction=tuple(direction), normal=tuple(normal), length=length, radius=R,
-                        **MATERIAL)  # fmt: skip
+    return Rod.straight(N, start=tuple(start), direction=tuple(direction), normal=tuple(normal), length=length,
+                        radius=R, **MATERIAL)  # fmt: skip
 
 
 def collide(rods: list[Rod], velocities: list[Array], law: Contact, dt: float, cylinders=()) -> Collision:

@@ -426,8 +426,7 @@ def touching(name, make_systems, friction=False):
             sim.append(system)
         law = dict(k=500.0, nu=0.5)
         if friction:
-            # friction is of half a contact there, so its slip damping is half of ours
-            law |= dict(friction_coefficient=0.4, velocity_damping_coefficient=1.5 if lib is theirs else 3.0)
+            law |= dict(friction_coefficient=0.4, velocity_damping_coefficient=3.0)
         if touches:
             sim.detect_contact_between(systems[0], systems[-1]).using(corrected(lib, name), **law)
         return [system for system in systems if not isinstance(system, lib.Plane)]

@@ -76,7 +76,7 @@ def arm(n: int, start: tuple, direction: tuple) -> Rod:
 
 SCENES = {
     "rod and cylinder": ([arm(16, (-0.25, 0.15, 0.037), (1.0, 0.1, 0.3))], dict(cylinders=[OBJECT])),
-    "on the ground": ([arm(16, (-0.25, 0.024, 0.034), (1.0, 0.0, 0.1))],
+    "on the ground": ([arm(16, (-0.25, 0.0245, 0.034), (1.0, 0.0, 0.1))],
                       dict(cylinders=[OBJECT], planes=[TILTED], gravity=GRAVITY)),
     "two rods": ([arm(12, (-0.25, 0.0, 0.0), (1.0, 0.0, 0.0)), arm(10, (-0.1, 0.047, -0.2), (0.5, 0.0, 0.9))],
                  dict(rod_contact=SMOOTH)),
