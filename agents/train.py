@@ -153,10 +153,13 @@ _NOT_IN_CONFIG = {"set", "n_envs", "out", "folder", "resume"}
 
 def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     """Read the config.yml of a run, with the budget that the arguments may extend."""
+    from agents import hyperparameters
     from agents.policies import read_config
 
     assert arguments.resume is not None
     config = read_config(arguments.resume)
+    # a file, which may have been edited
+    config["hyperparameters"] = hyperparameters.checked(config["algo"], config["hyperparameters"])
     if arguments.steps is not None or arguments.minutes is not None:
         config |= {"steps": arguments.steps, "minutes": arguments.minutes}
     _check(config)
@@ -171,8 +174,7 @@ def _check(config: dict[str, Any]) -> None:
     if config.get("imitate") and config["algo"] != "ppo":
         raise BadInputError(f"imitate must be 0 for {config['algo']}, got {config['imitate']}: only ppo can imitate")
     n_envs = config["hyperparameters"].get("n_envs", 1)
-    # what is no number the environment refuses
-    check_seeds("seed", config["seed"], n_envs if isinstance(n_envs, int) else 1, TRAINING)
+    check_seeds("seed", config["seed"], n_envs, TRAINING)
     check_seeds("evaluation_seed", config["evaluation_seed"], config["evaluation_episodes"], VALIDATION)
 
 
