@@ -61,8 +61,8 @@ def draw() -> "Figure":
             ax.set_xticks([])
             ax.set_yticks([])
             ax.set_title(f"{number}: level {level}.{i}", fontsize=8)
-        view = ("from above", "from the side", "turn about its axis, tip to tip")[row]
-        axes[row, 0].set_ylabel(f"{direction}: {EFFECT[direction]}\n({view})", fontsize=8)
+        view = ("from above", "from the side", "angle, tip to tip")[row]
+        axes[row, 0].set_ylabel(f"{direction}:\n{EFFECT[direction]}\n({view})", fontsize=8)
     return figure
 
 

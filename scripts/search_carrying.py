@@ -54,12 +54,12 @@ def make(n: int, arguments: Arguments) -> Any:
 
 def grabs(arguments: Arguments) -> list[Any]:
     """Return the states of octopuses that have just grabbed their object."""
-    from tqdm import tqdm
+    from agents.progress import track
 
     batch, found = make(arguments.grabs, arguments), []
     batch.reset(seed=arguments.seed)
     goes_on = np.ones(batch.num_envs, dtype=bool)
-    for _ in tqdm(range(batch.max_episode_steps), desc="grabbing", unit="step"):
+    for _ in track(range(batch.max_episode_steps), "grabbing"):
         _, _, terminated, truncated, _ = batch.step(fetch(batch))
         goes_on &= ~(terminated | truncated)
         has_grabbed = goes_on & (now(batch.situation()).grabbed == 1.0)
@@ -145,7 +145,8 @@ def main() -> None:
     import cma
     import tyro
     import yaml
-    from tqdm import tqdm
+
+    from agents.progress import Bar
 
     arguments = tyro.cli(Arguments, description=__doc__)
     make_folder(arguments.out.parent)
@@ -159,13 +160,14 @@ def main() -> None:
         start, arguments.sigma,
         {"popsize": arguments.population, "CMA_stds": spread, "seed": 1 + arguments.seed, "verbose": -9},
     )  # fmt: skip
-    progress = tqdm(range(arguments.generations), desc="searching", unit="generation")
-    for _ in progress:
-        candidates = strategy.ask()
-        trials = [begin[i] for i in rng.choice(len(begin), arguments.trials, replace=False)]
-        values, comes_home = worth(batch, [gait_of(np.array(each)) for each in candidates], trials)
-        strategy.tell(candidates, list(-values.mean(axis=1)))
-        progress.set_postfix({"home": f"{comes_home.mean():.0%}", "mean": f"{values.mean():.3f}"})
+    with Bar("searching") as bar:
+        for generation in range(1, arguments.generations + 1):
+            candidates = strategy.ask()
+            trials = [begin[i] for i in rng.choice(len(begin), arguments.trials, replace=False)]
+            values, comes_home = worth(batch, [gait_of(np.array(each)) for each in candidates], trials)
+            strategy.tell(candidates, list(-values.mean(axis=1)))
+            numbers = {"home": float(comes_home.mean()), "mean": float(values.mean())}
+            bar.show(generation / arguments.generations, numbers)
     found = gait_of(np.array(strategy.result.xfavorite))
     table = [np.round(row, 2).tolist() for row in found.table]
     text = {"period": round(found.period, 3), "table": table, "steering": np.round(found.steering, 2).tolist()}
