@@ -11,7 +11,7 @@ import gymnasium
 import numpy as np
 
 import elastica_gym  # noqa: F401  registers the environments
-from agents.checks import require_extra, run_command
+from agents.checks import make_folder, require_extra, run_command
 from elastica_gym.muscles import DIRECTIONS, LEVELS, N_ACTIVATIONS, N_ARMS, N_FUNCTIONS
 
 if TYPE_CHECKING:
@@ -32,8 +32,8 @@ def main() -> None:
     default = Path(__file__).parents[1] / "docs" / "images" / "activations.png"
     parser.add_argument("--output", type=Path, default=default, help="where to write the picture")
     output: Path = parser.parse_args().output
+    make_folder(output.parent)
     figure = draw()
-    output.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(output, dpi=110)
     print(f"wrote {output}")
 

@@ -15,6 +15,7 @@ from PIL import Image
 
 import elastica_gym  # noqa: F401  (registers the environments)
 from agents.checks import BadInputError
+from agents.progress import track
 from elastica_gym.viz import Policy, Rollout, Stage, framing, run_rollout
 from elastica_gym.viz.frames import animal_of, home, objects, outline, trail
 
@@ -39,7 +40,7 @@ def main() -> int:
         parser.error(f"--moments must be at least 1, not {options.moments}")
     try:
         strips = []
-        for animal, env in ENVS.items():
+        for animal, env in track(list(ENVS.items()), "drawing"):
             policy = policy_of(getattr(options, f"{animal}_run"))
             rollout = run_rollout(env, policy, seed=options.seed, duration=options.duration)
             strips.append(draw(rollout, n_moments=options.moments, width=options.size[0], height=options.size[1]))

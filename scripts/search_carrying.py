@@ -14,13 +14,16 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 import elastica_gym  # noqa: F401  registers the environments
-from agents.checks import make_folder, require_extra, run_command
+from agents.checks import BadInputError, check_bounds, make_folder, require_extra, run_command
 from elastica_gym.envs.handling import now
 from elastica_gym.envs.octopus_script import HOME, HOMEWARD, Gait, carry, fetch, see
 
 FETCH = "elastica_gym/OctopusFetch-v1"
 LONGEST = 5.5
 """Duration of a trial [s]"""
+LOWEST = {"generations": 1, "population": 4, "trials": 1, "grabs": 1, "sigma": 1e-6, "seed": 0, "threads": 1}
+MOST = 4096
+"""Environments in a batch"""
 
 
 @dataclasses.dataclass
@@ -149,8 +152,15 @@ def main() -> None:
     from agents.progress import Bar
 
     arguments = tyro.cli(Arguments, description=__doc__)
+    check_bounds(dataclasses.asdict(arguments), LOWEST)
+    if max(arguments.grabs, arguments.population * arguments.trials) > MOST:
+        raise BadInputError(f"grabs, and population times trials, must be at most {MOST}, got {arguments.grabs}, and "
+                            f"{arguments.population * arguments.trials}")  # fmt: skip
     make_folder(arguments.out.parent)
     begin = grabs(arguments)
+    if len(begin) < arguments.trials:
+        raise BadInputError(f"trials must be at most the octopuses that have grabbed their object, {len(begin)} of "
+                            f"{arguments.grabs}, got {arguments.trials}: ask for more grabs")  # fmt: skip
     batch = make(arguments.population * arguments.trials, arguments)
     batch.reset(seed=arguments.seed)
     rng, start = np.random.default_rng(arguments.seed), numbers_of(HOMEWARD)

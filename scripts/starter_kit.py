@@ -85,7 +85,12 @@ def main() -> None:
     """Run the command line."""
     import tyro
 
+    from agents.checks import check_bounds, choose, environment_ids
+    from agents.evaluate import spreads
+
     arguments = tyro.cli(Arguments)
+    check_bounds(dataclasses.asdict(arguments), {"imitate": 1, "targets": 1, "seconds": 0.05})
+    choose("spread", arguments.spread, spreads(choose("environment", arguments.env, environment_ids())))
     out = arguments.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
     run(ROOT / "scripts" / "draw_activations.py", "--output", out / "activations.png")
@@ -123,4 +128,6 @@ def run(*command: Any) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    from agents.checks import run_command
+
+    run_command(main)

@@ -106,6 +106,35 @@ def test_divergences_that_cannot_be_counted(option, message):
     assert message in refused("scripts.count_divergence", *option)
 
 
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (("scripts.make_table", "--episodes", 0), "episodes must be at least 1, got 0"),
+        (("scripts.make_table", "--minutes", "nan"), "minutes must be at least 0.001, got nan"),
+        (("scripts.make_table", "--seeds", 0), "seeds must be at least 1, got 0"),
+        (("scripts.search_carrying", "--grabs", 0), "grabs must be at least 1, got 0"),
+        (("scripts.search_carrying", "--population", 4096, "--trials", 2), "population times trials, must be at most"),
+        (("agents.search", "--population", 5000), "The environment refuses its arguments: num_envs"),
+        (("scripts.quickstart", "--episodes", 0), "episodes must be at least 1, got 0"),
+        (("scripts.starter_kit", "--targets", 0), "targets must be at least 1, got 0"),
+        (("scripts.starter_kit", "--spread", "ark"), "Unknown spread 'ark'; did you mean 'arc'"),
+        (("scripts.make_film", "--name", "octopus_fetch"), "did you mean 'octopus_fetch_dagger'"),
+        (("scripts.make_film", "--every", 0), "every must be at least 1, got 0"),
+        (("scripts.make_film", "--size", 0, 0), "size must be two even numbers up to 2048, got 0 0"),
+        (("scripts.draw_activations", "--output", "/proc/x/y.png"), "Cannot write into the folder /proc/x"),
+        (("scripts.draw_muscles", "--output", "/proc/x/y.png"), "Cannot write into the folder /proc/x"),
+        (("scripts.score", "--policy", "nowhere.py"), "There is no policy nowhere.py"),
+    ],
+)
+def test_scripts_refuse_in_one_line_what_cannot_be(command, message, tmp_path):
+    module, *options = command
+    # what writes somewhere unless told otherwise must not write into the repository
+    out = ("--out", tmp_path) if module.rpartition(".")[2] in ("make_table", "quickstart", "starter_kit") else ()
+    out = ("--folder", tmp_path) if module == "agents.search" else out
+    out = ("--out", tmp_path / "gait.yml") if module == "scripts.search_carrying" else out
+    assert message in refused(module, *options, *out)
+
+
 def test_unknown_spread():
     octopus = "--policy", "zero", "--env", "elastica_gym/OctopusReach-v1"
     assert "'everywhere'; did you mean 'anywhere'? Valid: anywhere, arc, default." in refused(

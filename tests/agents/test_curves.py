@@ -72,6 +72,6 @@ def assert_inside(figure):
     width, height = canvas.get_width_height()
     texts = [text for ax in figure.axes for text in (ax.title, ax.xaxis.label, ax.yaxis.label)]
     texts += figure.texts if figure._suptitle is None else [figure._suptitle]
-    for text in texts:
+    for text in filter(lambda text: text.get_text(), texts):
         box = text.get_window_extent()
         assert box.x0 >= 0.0 and box.y0 >= 0.0 and box.x1 <= width and box.y1 <= height, text.get_text()
