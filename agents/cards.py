@@ -36,7 +36,8 @@ def load_pretrained(name: str, folder: Path = PRETRAINED) -> tuple[TrainedPolicy
     policy
         The model with its normalisation.
     card
-        ``environment``, ``algorithm``, ``seed``, ``command``, ``hyperparameters``, ``score`` and more.
+        ``environment``, ``algorithm``, ``seed``, ``command``, ``hyperparameters``, ``score``, what its ``intervals``
+        cover, the machines that it was ``scored_on`` and ``trained_on``, and more.
     """
     card = read_card(name, folder)
     model = load_model(folder / f"{name}.zip", card["algorithm"])

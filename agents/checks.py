@@ -126,7 +126,10 @@ def fail(message: str, *, status: int = 2) -> NoReturn:
 
 
 def run_command(command: Callable[[], None]) -> None:
-    """Run a command-line program: bad input and failing disks become one line and a status that is not 0."""
+    """Run a command-line program.
+
+    Bad input, failing disks and too little memory become one line and a status that is not 0.
+    """
     try:
         command()
     except BadInputError as error:
@@ -134,5 +137,7 @@ def run_command(command: Callable[[], None]) -> None:
     except OSError as error:
         place = f": {error.filename}" if error.filename else ""
         fail(f"{error.strerror or error}{place}", status=1)
+    except MemoryError as error:
+        fail(f"not enough memory: {error}", status=1)
     except KeyboardInterrupt:
         fail("interrupted", status=130)

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from agents import curves
 from agents.checkpoints import write_atomically
+from agents.checks import BadInputError
 from agents.evaluate import Evaluation, run_episodes
 from agents.gaits import GAITS, Gait, GaitPolicy, check_fits, describe, gait_for
 from agents.progress import ProgressDisplay
@@ -50,7 +51,10 @@ class Search:
         self.best = -np.inf
 
     def _environments(self, n: int) -> BatchVecEnv:
-        return make_batch_vec_env(self.config["env"], n_envs=n, n_threads=self.config["threads"])
+        try:
+            return make_batch_vec_env(self.config["env"], n_envs=n, n_threads=self.config["threads"])
+        except ValueError as error:
+            raise BadInputError(f"The environment refuses its arguments: {error}") from error
 
     def run(self) -> None:
         """Search until the budget is spent, and write the plot, also when interrupted."""

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
+from agents.policies import read_config
 from agents.run_files import EVALUATIONS, METRICS, read_table
 
 PANELS = {"return": "return", "distance": "distance [m]", "success": "success rate"}
@@ -16,7 +17,7 @@ PANELS = {"return": "return", "distance": "distance [m]", "success": "success ra
 def plot_run(run: Path) -> Figure:
     """Draw a run's learning curve: the training episodes as a line, the evaluations as points with intervals."""
     metrics, evaluations = read_table(run / METRICS), read_table(run / EVALUATIONS)
-    figure, axes = _panels(run.name)
+    figure, axes = _panels(title_of([run]))
     for ax, column in zip(axes, PANELS, strict=True):
         if column in metrics:
             ax.plot(metrics["steps"], metrics[column], lw=1, label="training, with exploration")
@@ -35,10 +36,36 @@ def plot_run(run: Path) -> Figure:
     return figure
 
 
-def plot_runs(runs: list[Path], title: str) -> Figure:
+def title_of(runs: list[Path]) -> str:
+    """Return what runs of one environment are: how they were trained, and their seeds, or how many there are."""
+    configs = [read_config(run) for run in runs]
+    kinds = dict.fromkeys(_kind(config) for config in configs)
+    seeds = sorted({config["seed"] for config in configs})
+    return f"{' and '.join(kinds)}, {'seed' if len(seeds) == 1 else 'seeds'} {', '.join(map(str, seeds))}"
+
+
+def _kind(config: dict[str, Any]) -> str:
+    """Return environment, algorithm, and what a run imitated or started from."""
+    parts = [config["env"].rpartition("/")[2], config["algo"].upper()]
+    if config.get("imitate"):
+        taught = f"imitation over {config['imitate']:,} steps"
+        # a run without steps of its own learns by imitation alone
+        parts[1] = taught if config.get("steps") == 0 else f"{taught}, then {parts[1]}"
+    if config.get("start_from"):
+        parts.append(f"from {Path(config['start_from']).name}")
+    return ", ".join(parts)
+
+
+def curve_of(run: Path) -> dict[str, np.ndarray]:
+    """Return the table with a run's curve: of training, or of evaluations where it has learned by imitation alone."""
+    metrics = read_table(run / METRICS)
+    return metrics if len(metrics.get("steps", ())) > 1 else read_table(run / EVALUATIONS)
+
+
+def plot_runs(runs: list[Path]) -> Figure:
     """Draw the mean over several runs of one task, usually seeds, and the range between the lowest and highest."""
-    tables = [table for table in (read_table(run / METRICS) for run in runs) if table]
-    figure, axes = _panels(title)
+    tables = [curve_of(run) for run in runs]
+    figure, axes = _panels(title_of(runs))
     for ax, column in zip(axes, PANELS, strict=True):
         grid = np.linspace(max(t["steps"][0] for t in tables), min(t["steps"][-1] for t in tables), 200)
         curves = np.stack([_interpolate(grid, table, column) for table in tables])
@@ -52,7 +79,8 @@ def _interpolate(grid: np.ndarray, table: dict[str, np.ndarray], column: str) ->
     known = np.isfinite(table[column])
     if not known.any():
         return np.full_like(grid, np.nan)
-    return np.interp(grid, table["steps"][known], table[column][known])
+    # nothing is known before the first episodes have ended
+    return np.interp(grid, table["steps"][known], table[column][known], left=np.nan, right=np.nan)
 
 
 def _panels(title: str) -> tuple[Figure, Any]:

@@ -3,7 +3,7 @@
 import dataclasses
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 LOWEST = {"episodes": 1, "seed": 0, "threads": 1}
 LARGEST_BATCH = 1024
 """Episodes that run side by side; more than these are run in turns."""
+ELSEWHERE = math.sqrt(2.0)
+"""How much wider than a confidence interval that is which has what another CPU measures; see `Evaluation.elsewhere`"""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -63,13 +65,43 @@ class Evaluation:
             "return_mean": float(self.returns.mean()),
             "return_ci95": confidence(self.returns),
             "success_rate": float(self.successes.mean()),
+            "success_interval95": list(success_interval(self.successes)),
             "distance_mean": float(self.distances.mean()),
             "distance_ci95": confidence(self.distances),
             "length_mean": float(self.lengths.mean()),
             "divergences": self.divergences,
             "terms": {name: float(values.mean()) for name, values in self.terms.items()},
             "terms_ci95": {name: confidence(values) for name, values in self.terms.items()},
+            "elsewhere95": self.elsewhere(),
         }
+
+    def elsewhere(self) -> dict[str, list[float]]:
+        """Return where the means over the same seeds are on another CPU, in 95 of 100 cases; ready for JSON.
+
+        There, episodes are others with the same distribution (`agents.machine`). The difference of two means over as
+        many independent episodes has twice the variance of either: sqrt(2) times the half width of a confidence
+        interval holds what the other one will be.
+        """
+        found = {}
+        for name, values in (("return", self.returns), ("distance", self.distances)):
+            mean, half = float(values.mean()), ELSEWHERE * confidence(values)
+            found[name] = [mean - half, mean + half]
+        return {**found, "success": list(success_interval(self.successes, widened=ELSEWHERE))}
+
+    def per_episode(self) -> list[dict[str, Any]]:
+        """Return what each episode came to, ready for JSON."""
+        return [
+            {
+                "seed": int(self.seeds[i]),
+                "return": float(self.returns[i]),
+                "length": int(self.lengths[i]),
+                "distance": float(self.distances[i]),
+                "success": bool(self.successes[i]),
+                "termination": str(self.reasons[i]),
+                "terms": {name: float(values[i]) for name, values in self.terms.items()},
+            }
+            for i in range(len(self.returns))
+        ]
 
 
 def confidence(values: np.ndarray) -> float:
@@ -83,17 +115,24 @@ def confidence(values: np.ndarray) -> float:
 
 
 def evaluate(
-    policy: "Policy", env_id: str, *, episodes: int, seed: int, n_threads: int = 2, env_kwargs: dict | None = None
-) -> Evaluation:
+    policy: "Policy", env_id: str, *, episodes: int, seed: int, n_threads: int = 2, env_kwargs: dict | None = None,
+    show: Callable[[float], object] | None = None,
+) -> Evaluation:  # fmt: skip
     """Run `policy` for `episodes` episodes of `env_id`, side by side; episode i has the seed ``seed + i``.
 
-    What an episode comes to depends on its seed alone, and not on how many run beside it.
+    What an episode comes to depends on its seed alone, and not on how many run beside it. `show` is called often, with
+    the fraction of the steps that is done.
     """
     check_bounds({"episodes": episodes, "seed": seed, "threads": n_threads}, LOWEST)
-    parts = []
+    parts: list[Evaluation] = []
     for first in range(0, episodes, LARGEST_BATCH):
         seeds = [seed + i for i in range(first, min(first + LARGEST_BATCH, episodes))]
-        parts.append(_evaluate_batch(policy, env_id, seeds, n_threads, env_kwargs or {}))
+
+        def show_part(done: float, first: int = first, n: int = len(seeds)) -> None:
+            if show is not None:
+                show((first + done * n) / episodes)
+
+        parts.append(_evaluate_batch(policy, env_id, seeds, n_threads, env_kwargs or {}, show_part))
     if len(parts) == 1:
         return parts[0]
     fields = {f.name: [getattr(part, f.name) for part in parts] for f in dataclasses.fields(Evaluation)}
@@ -102,30 +141,37 @@ def evaluate(
 
 
 def _evaluate_batch(
-    policy: "Policy", env_id: str, seeds: list[int], n_threads: int, env_kwargs: dict[str, Any]
-) -> Evaluation:
+    policy: "Policy", env_id: str, seeds: list[int], n_threads: int, env_kwargs: dict[str, Any],
+    show: Callable[[float], object],
+) -> Evaluation:  # fmt: skip
     from agents.vec_env import make_batch_vec_env
 
     env = make_batch_vec_env(env_id, n_envs=len(seeds), n_threads=n_threads, **env_kwargs)
     try:
         _check_fits(policy, env.observation_space.shape, env_id)
-        return run_episodes(policy, env, seeds)
+        return run_episodes(policy, env, seeds, show)
     finally:
         env.close()
 
 
-def run_episodes(policy: "Policy", env: "BatchVecEnv", seeds: Sequence[int]) -> Evaluation:
-    """Run one episode in each environment, with a seed for each."""
+def run_episodes(
+    policy: "Policy", env: "BatchVecEnv", seeds: Sequence[int], show: Callable[[float], object] | None = None
+) -> Evaluation:
+    """Run one episode in each environment, with a seed for each; `show` is called with the fraction that is done."""
     env.seed(seeds)
     observations = env.reset()
     policy.reset(seeds)
     infos: dict[int, dict[str, Any]] = {}
+    steps = 0
     while len(infos) < len(seeds):
         env.step_async(policy(observations, env.batch))
         observations, _, dones, step_infos = env.step_wait()
         for i in np.flatnonzero(dones):
             # an environment that is done goes on with episodes that nobody counts until the last one is done
             infos.setdefault(int(i), step_infos[i])
+        steps += 1
+        if show is not None:
+            show(steps / env.batch.max_episode_steps)
     return _collect(seeds, [infos[i] for i in range(len(seeds))])
 
 
@@ -155,7 +201,7 @@ def print_table(title: str, result: Evaluation) -> None:
     from rich.table import Table
 
     summary = result.summary()
-    table = Table(title=title)
+    table = Table(title=title, caption=f"Means on another CPU: within {ELSEWHERE:.1f} times the interval.")
     table.add_column("over the episode")
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")
@@ -176,9 +222,9 @@ def _rows(summary: dict[str, Any]) -> Iterator[tuple[str, float, float]]:
         yield f"reward: {name}", mean, summary["terms_ci95"][name]
 
 
-def success_interval(successes: np.ndarray) -> tuple[float, float]:
-    """95 % interval of a success rate (Wilson 1927), which stays sensible at none and all."""
-    n, rate, z = len(successes), float(np.mean(successes)), 1.96
+def success_interval(successes: np.ndarray, *, widened: float = 1.0) -> tuple[float, float]:
+    """95 % interval of a success rate (Wilson 1927), which stays sensible at none and all; or one that is wider."""
+    n, rate, z = len(successes), float(np.mean(successes)), 1.96 * widened
     centre = (rate + z * z / (2 * n)) / (1 + z * z / n)
     half = z / (1 + z * z / n) * math.sqrt(rate * (1 - rate) / n + z * z / (4 * n * n))
     return centre - half, centre + half
@@ -206,8 +252,10 @@ class EvaluateArguments:
     """Seed of the first episode; by default one that nothing is trained or chosen with (`agents.seeds`)."""
     record: Path | None = None
     """Folder for a rerun recording of the first episode."""
+    video: Path | None = None
+    """File for a film of the first episode, which ends in .mp4 or .gif."""
     json: Path | None = None
-    """File for the numbers as JSON."""
+    """File for the numbers as JSON: means, each episode, and what they were computed with."""
     threads: int = 2
     """Threads for the physics."""
 
@@ -218,27 +266,59 @@ def main() -> None:
     import tyro
 
     arguments = tyro.cli(EvaluateArguments)
-    policy, env_id, env_kwargs = _policy_and_environment(arguments)
-    if arguments.spread is not None:
-        env_kwargs = {**env_kwargs, "spread": choose("spread", arguments.spread, spreads(env_id))}
-    if arguments.record is not None:
-        make_folder(arguments.record)
-    result = evaluate(
-        policy,
-        env_id,
-        episodes=arguments.episodes,
-        seed=arguments.seed,
-        n_threads=arguments.threads,
-        env_kwargs=env_kwargs,
-    )
+    from agents.progress import Bar
+
+    if arguments.video is not None:
+        from agents.films import SIZE, check_film
+
+        check_film(arguments.video, SIZE)
+    for folder in (arguments.record, arguments.json and arguments.json.parent):
+        if folder is not None:
+            make_folder(folder)
+    with Bar(f"evaluating {arguments.episodes} episodes") as bar:
+        policy, env_id, env_kwargs = _policy_and_environment(arguments)
+        if arguments.spread is not None:
+            env_kwargs = {**env_kwargs, "spread": choose("spread", arguments.spread, spreads(env_id))}
+        result = evaluate(
+            policy,
+            env_id,
+            episodes=arguments.episodes,
+            seed=arguments.seed,
+            n_threads=arguments.threads,
+            env_kwargs=env_kwargs,
+            show=bar.show,
+        )
     name = arguments.policy or arguments.pretrained or str(arguments.run)
     print_table(f"{name} on {env_id}, {arguments.episodes} episodes from seed {arguments.seed}", result)
     if arguments.json is not None:
-        make_folder(arguments.json.parent)
-        summary = {"policy": name, "env": env_id, **result.summary()}
-        arguments.json.write_text(json.dumps(summary, indent=2) + "\n")
+        write_json(arguments.json, arguments, result, policy=name, env=env_id, env_kwargs=env_kwargs)
     if arguments.record is not None:
         record(policy, env_id, seed=arguments.seed, folder=arguments.record, env_kwargs=env_kwargs)
+    if arguments.video is not None:
+        from agents.films import film
+
+        film(policy, env_id, arguments.video, seed=arguments.seed, env_kwargs=env_kwargs)
+
+
+def write_json(path: Path, arguments: EvaluateArguments, result: Evaluation, **what: Any) -> None:
+    """Write means, what each episode came to, the arguments, and the machine and versions; say where that is."""
+    from agents import machine
+
+    given = {key: str(value) if isinstance(value, Path) else value for key, value in vars(arguments).items()}
+    everything = {
+        **what, **result.summary(), "per_episode": result.per_episode(), "arguments": given, **machine.describe(),
+    }  # fmt: skip
+    path.write_text(json.dumps(_without_nan(everything), indent=2, allow_nan=False) + "\n")
+    print(f"wrote {path}")
+
+
+def _without_nan(value: Any) -> Any:
+    """Return what is written as JSON, which has no NaN, with null for each."""
+    if isinstance(value, dict):
+        return {key: _without_nan(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_without_nan(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _policy_and_environment(arguments: EvaluateArguments) -> "tuple[Policy, str, dict[str, Any]]":
@@ -304,11 +384,12 @@ def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs
     if message := missing_extra("viz"):
         print(f"no recording: {message}")
         return None
-    from elastica_gym.viz import record_rollout
+    from agents.films import run_shown
+    from elastica_gym.viz import write_recording
 
     path = folder / f"{env_id.rpartition('/')[2]}-seed{seed}.rrd"
     policy.reset([seed])
-    record_rollout(env_id, policy, path, seed=seed, **env_kwargs)
+    write_recording(run_shown(policy, env_id, seed=seed, env_kwargs=env_kwargs), path)
     print(f"recorded {path}")
     return path
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from agents.allowed_values import ALLOWED, NORMALIZE, policy_allowed, read_mapping, read_value
 from agents.checks import BadInputError, choose
 
 CONFIGS = Path(__file__).parent.parent / "configs"
@@ -20,6 +21,15 @@ NOT_CONFIGURABLE = {
     *("action_noise", "device", "replay_buffer_class", "rollout_buffer_class"),
 }
 """Arguments of the algorithms that training sets itself, or that are objects and not values."""
+
+LITERALS = ("normalize", "policy_kwargs", "replay_buffer_kwargs", "rollout_buffer_kwargs")
+"""Keys whose value may be written as a text of Python, such as ``dict(norm_obs=True)``"""
+
+SET_BY_POLICIES = {
+    *("self", "args", "kwargs", "observation_space", "action_space", "lr_schedule"),
+    *("features_extractor_class", "features_extractor_kwargs", "optimizer_class"),
+}
+"""Arguments of policies that the algorithm sets, or that are objects and not values"""
 
 SCHEDULES = ("learning_rate", "clip_range", "clip_range_vf")
 """Keys whose value may be ``lin_<start>``: falling linearly from start to zero over the budget."""
@@ -62,10 +72,55 @@ def load(algo: str, env_id: str, *, config: Path | None = None, overrides: dict[
     entry = entries.get(name, entries.get("default")) if isinstance(entries, dict) else None
     if not isinstance(entry, dict):
         raise BadInputError(f"The configuration {path} has no entry {env_id!r} and none called 'default'.")
-    values = {**entry, **(overrides or {})}
-    for key in values:
-        choose(f"key of the {algo} configuration", key, valid_keys(algo))
-    return values
+    return checked(algo, {**entry, **(overrides or {})})
+
+
+def checked(algo: str, values: dict[str, Any]) -> dict[str, Any]:
+    """Return hyperparameters of `algo` with numbers that were written as texts, as YAML reads 1e-3, as numbers.
+
+    Raises
+    ------
+    BadInputError
+        If a key is unknown, or a value is not allowed; the message names both and says what is.
+    """
+    allowed = ALLOWED[choose("algorithm", algo, ALGORITHMS)]
+    kept = {}
+    for key, value in values.items():
+        rule = allowed[choose(f"key of the {algo} configuration", str(key), valid_keys(algo))]
+        if key in LITERALS and isinstance(value, str):
+            # kept as it is written
+            read_value(key, literal(value, name=key), rule)
+            kept[key] = value
+        else:
+            kept[key] = read_value(key, value, rule)
+    _check_parts(algo, kept)
+    return kept
+
+
+def _check_parts(algo: str, values: dict[str, Any]) -> None:
+    """Check what is inside of mappings, and what depends on more than one key."""
+    if "policy" not in values:
+        raise BadInputError(f"The {algo} configuration has no policy, such as MlpPolicy.")
+    policy = policy_class(algo, values["policy"])
+    read_mapping("normalize", _mapping(values, "normalize"), NORMALIZE)
+    known = _arguments_of(policy) - SET_BY_POLICIES
+    read_mapping("policy_kwargs", _mapping(values, "policy_kwargs"), policy_allowed(algo, known))
+    frequency = values.get("train_freq")
+    if isinstance(frequency, (list, tuple)) and frequency[1] == "episode" and values.get("n_envs", 1) != 1:
+        raise BadInputError(f"train_freq must be in steps where n_envs is not 1, got {frequency!r}")
+
+
+def _mapping(values: dict[str, Any], key: str) -> dict[Any, Any]:
+    """Return the mapping that a value is, or that its text stands for."""
+    value = values.get(key)
+    value = literal(value) if isinstance(value, str) else value
+    return value if isinstance(value, dict) else {}
+
+
+def _arguments_of(cls: type) -> set[str]:
+    """Return the names of all arguments that a class and those that it derives from can be made with."""
+    inits = (vars(base)["__init__"] for base in cls.__mro__ if "__init__" in vars(base) and base is not object)
+    return {name for init in inits for name in inspect.signature(init).parameters}
 
 
 def parse_overrides(assignments: list[str]) -> dict[str, Any]:
@@ -84,12 +139,7 @@ def parse_overrides(assignments: list[str]) -> dict[str, Any]:
 
 def timesteps(values: dict[str, Any]) -> int:
     """Return the environment steps to train for that `values` ask for."""
-    try:
-        # YAML reads 1e6 as a text
-        return int(float(values["n_timesteps"]))
-    except (KeyError, OverflowError, TypeError, ValueError):
-        wrong = values.get("n_timesteps")
-        raise BadInputError(f"n_timesteps must be a number of environment steps, got {wrong!r}") from None
+    return read_value("n_timesteps", values.get("n_timesteps"), ALLOWED["ppo"]["n_timesteps"])
 
 
 def algorithm_arguments(values: dict[str, Any]) -> dict[str, Any]:
@@ -97,23 +147,37 @@ def algorithm_arguments(values: dict[str, Any]) -> dict[str, Any]:
     arguments = {key: value for key, value in values.items() if key not in OWN_KEYS}
     for key in SCHEDULES:
         if isinstance(arguments.get(key), str):
-            arguments[key] = _schedule(key, arguments[key])
-    for key in ("policy_kwargs", "replay_buffer_kwargs", "rollout_buffer_kwargs"):
+            arguments[key] = _schedule(arguments[key])
+    for key in LITERALS:
         if isinstance(arguments.get(key), str):
             arguments[key] = literal(arguments[key])
     if "." in str(arguments.get("policy")):
-        arguments["policy"] = policy_class(arguments["policy"])
+        arguments["policy"] = _imported(arguments["policy"])
     if isinstance(arguments.get("train_freq"), list):
         arguments["train_freq"] = tuple(arguments["train_freq"])
     return arguments
 
 
-def policy_class(name: str) -> Any:
-    """Return the class of a policy that is written with its module, as rl_zoo3 has it."""
+def policy_class(algo: str, name: str) -> Any:
+    """Return the class of a policy: one of the algorithm's own, or one that is written with its module."""
+    from stable_baselines3.common.policies import ActorCriticPolicy
+    from stable_baselines3.sac.policies import SACPolicy
+
+    if "." not in name:
+        aliases = algorithm_class(algo).policy_aliases
+        return aliases[choose("policy", name, aliases)]
+    found, base = _imported(name), ActorCriticPolicy if algo == "ppo" else SACPolicy
+    if not (isinstance(found, type) and issubclass(found, base)):
+        raise BadInputError(f"policy must be a subclass of {base.__name__} for {algo}, got {name!r}")
+    return found
+
+
+def _imported(name: str) -> Any:
+    """Return what is written with its module, as rl_zoo3 has it."""
     module, _, attribute = name.rpartition(".")
     try:
         return getattr(importlib.import_module(module), attribute)
-    except (ImportError, AttributeError) as error:
+    except (ImportError, AttributeError, TypeError, ValueError) as error:
         raise BadInputError(f"There is no policy {name!r}: {error}") from error
 
 
@@ -127,25 +191,23 @@ def normalize_arguments(values: dict[str, Any]) -> dict[str, Any] | None:
     return {**(normalize if isinstance(normalize, dict) else {}), "gamma": values.get("gamma", 0.99)}
 
 
-def _schedule(key: str, text: str) -> Any:
+def _schedule(text: str) -> Any:
     from stable_baselines3.common.utils import LinearSchedule
 
-    kind, _, number = text.rpartition("_")
-    try:
-        return LinearSchedule(float(number), 0.0, 1.0) if kind == "lin" else float(text)
-    except ValueError:
-        raise BadInputError(f"{key} must be a number or 'lin_<number>', got {text!r}") from None
+    return LinearSchedule(float(text.removeprefix("lin_")), 0.0, 1.0)
 
 
-def literal(text: str) -> Any:
+def literal(text: str, *, name: str = "value") -> Any:
     """Read a Python literal that may also have ``dict(...)`` and names from ``torch.nn`` like ``nn.Tanh``.
 
-    rl_zoo3 evaluates such strings; here nothing is run.
+    rl_zoo3 evaluates such strings; here nothing is run. Errors call it by `name`.
     """
     try:
         return _value(ast.parse(text.strip(), mode="eval").body)
-    except (SyntaxError, ValueError) as error:
-        raise BadInputError(f"Cannot read {text!r}: only literals, dict(...) and nn.<Module> are allowed.") from error
+    except (RecursionError, SyntaxError, TypeError, ValueError) as error:
+        raise BadInputError(
+            f"{name} cannot be read: only literals, dict(...) and nn.<Module> are allowed, got {text!r}"
+        ) from error
 
 
 def _value(node: ast.expr) -> Any:

@@ -5,10 +5,10 @@ from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
-from tqdm import tqdm
 
 from agents.checks import BadInputError, check_bounds, choose_environment, missing_extra
 from agents.policy_process import PolicyError, PolicyProcess
+from agents.progress import Bar
 from agents.scoring import GENERAL, GOALS, POINTS, Mask, goals_held, score
 from agents.seeds import target_seeds
 from agents.trials import Sampler, run_trials
@@ -57,8 +57,8 @@ def judge(
         try:
             for stream, spread in enumerate(KINDS):
                 seeds = target_seeds(target_seed, stream, INITIAL_STATES if spread == "default" else targets)
-                policy.begin(len(seeds))
                 with _Watch(f"{spread} target", record and record / f"{spread}.rrd") as watch:
+                    policy.begin(len(seeds))
                     samples = run_trials(policy, env_id, seeds=seeds, watch=watch, spread=spread, n_threads=n_threads,
                                          **env_kwargs)  # fmt: skip
                 held[spread] = goals_held(samples)
@@ -110,16 +110,17 @@ class _Watch:
 
     def __init__(self, name: str, path: Path | None):
         self._path = path
-        self._bar = tqdm(desc=name, unit="step")
+        self._bar = Bar(name)
         self._recorder: Any = None
 
     def __enter__(self) -> Self:
+        self._bar.__enter__()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._bar.close()
+        self._bar.__exit__(kind, error, trace)
         if self._recorder is not None and self._path is not None:
             from elastica_gym.viz import write_recording
 
@@ -127,12 +128,11 @@ class _Watch:
 
     def __call__(self, batch: Any, sampler: Sampler, infos: dict[str, Any] | None) -> None:
         if infos is None:
-            self._bar.reset(total=batch.max_episode_steps)
             if self._path is not None:
                 from elastica_gym.viz import Recorder
 
                 self._recorder = Recorder(batch).capture()
             return
-        self._bar.update()
+        self._bar.show(batch.elapsed.max() / batch.max_episode_steps)
         if self._recorder is not None and not sampler.is_over[0]:
             self._recorder.capture(infos)

@@ -28,15 +28,17 @@ def main() -> None:
     from agents import curves
     from agents.checkpoints import write_atomically
     from agents.policies import read_config
-    from agents.run_files import METRICS, read_table
+    from agents.run_files import EVALUATIONS, METRICS
 
     for run in arguments.runs:
         if (trained_on := read_config(run)["env"]) != arguments.env:
             raise BadInputError(f"The run {run} was trained on {trained_on}, not on {arguments.env}.")
-        if len(read_table(run / METRICS).get("steps", [])) < 2:
-            raise BadInputError(f"The run {run} has no curve yet: {run / METRICS} has less than two rows.")
+        if len(curves.curve_of(run).get("steps", ())) < 2:
+            raise BadInputError(
+                f"The run {run} has no curve yet: {METRICS} and {EVALUATIONS} in it have less than two rows."
+            )
     make_folder(arguments.out.parent)
-    figure = curves.plot_runs(arguments.runs, f"{arguments.env}, runs: {len(arguments.runs)}")
+    figure = curves.plot_runs(arguments.runs)
     write_atomically(arguments.out, lambda path: curves.save(figure, path))
     print(f"Wrote {arguments.out}")
 

@@ -1,18 +1,95 @@
-"""What a person sees while an agent trains."""
+"""Progress of what takes longer than a moment: a bar on a terminal, and a few lines in a log."""
 
 import math
+import sys
 import time
+from collections.abc import Iterator, Sequence
 from types import TracebackType
-from typing import Self
+from typing import Self, TextIO, TypeVar
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from tqdm import tqdm
 
-SECONDS_BETWEEN_LINES = 15.0
+PARTS = 10
+"""Lines in a log for the whole of a task, besides the first"""
+LONGEST_SILENCE = 300.0
+"""Time after which a log gets a line though less is done [s]"""
+QUIET = 2.0
+"""Time for which nothing but the first line goes into a log [s]"""
+
+Item = TypeVar("Item")
+
+
+class LogLines:
+    """When a log gets a line: at every tenth of the task, and after five minutes without one."""
+
+    def __init__(self) -> None:
+        self._begun = self._last = time.monotonic()
+        self._passed = 0
+
+    def is_due(self, done: float) -> bool:
+        """Return whether the log gets a line now that the fraction `done` is done."""
+        now, part = time.monotonic(), math.floor(done * PARTS + 1e-9)
+        if now - self._begun < QUIET or (part <= self._passed and now - self._last < LONGEST_SILENCE):
+            return False
+        self._last, self._passed = now, part
+        return True
+
+
+class Bar:
+    """Progress of one task; a context manager.
+
+    On a terminal it is a bar that disappears when the task is done. Elsewhere it is a line at the beginning, one at
+    every tenth, and none for the tenths of what takes less than two seconds.
+
+    Parameters
+    ----------
+    name
+        What is done.
+    file
+        Where to, by default standard error.
+    """
+
+    def __init__(self, name: str, *, file: TextIO | None = None):
+        self._name, self._file = name, file or sys.stderr
+        self._lines = LogLines()
+        self._bar: tqdm | None = None
+
+    def __enter__(self) -> Self:
+        if self._file.isatty():
+            form = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}<{remaining}{postfix}"
+            self._bar = tqdm(total=1.0, desc=self._name, file=self._file, bar_format=form, leave=False)
+        else:
+            print(f"{self._name} ...", file=self._file, flush=True)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def show(self, done: float, numbers: dict[str, float] | None = None) -> None:
+        """Show that the fraction `done` is done, and the latest numbers."""
+        text = _text(numbers or {})
+        if self._bar is not None:
+            self._bar.set_postfix_str(text, refresh=False)
+            self._bar.update(min(done, 1.0) - self._bar.n)
+        elif self._lines.is_due(done):
+            print(f"{self._name}: {done:.0%}  {text}".rstrip(), file=self._file, flush=True)
+
+
+def track(items: Sequence[Item], name: str) -> Iterator[Item]:
+    """Yield items, and show how many of them are done."""
+    with Bar(name) as bar:
+        for i, item in enumerate(items):
+            yield item
+            bar.show((i + 1) / len(items))
 
 
 class ProgressDisplay:
-    """A progress bar with the latest numbers; where there is no terminal, a line every quarter of a minute."""
+    """A progress bar of a training or search with its latest numbers; where there is no terminal, a few lines."""
 
     def __init__(self) -> None:
         self._console = Console()
@@ -26,7 +103,7 @@ class ProgressDisplay:
             disable=not self._console.is_terminal,
         )
         self._task = self._bar.add_task("compiling", total=1.0)
-        self._last_line = time.monotonic()
+        self._lines = LogLines()
 
     def __enter__(self) -> Self:
         self._bar.start()
@@ -39,15 +116,18 @@ class ProgressDisplay:
 
     def update(self, done: float, numbers: dict[str, float]) -> None:
         """Show that the fraction `done` of the budget is spent, and those of `numbers` that are known already."""
-        text = "  ".join(f"{name} {_short(value)}" for name, value in numbers.items() if math.isfinite(value))
+        text = _text(numbers)
         self._bar.update(self._task, completed=min(done, 1.0), description=text)
-        if not self._console.is_terminal and time.monotonic() - self._last_line > SECONDS_BETWEEN_LINES:
-            self._last_line = time.monotonic()
+        if not self._console.is_terminal and self._lines.is_due(done):
             self._console.print(f"{done:4.0%}  {text}", soft_wrap=True)
 
     def say(self, text: str) -> None:
         """Print a line above the bar."""
         self._console.print(text, soft_wrap=True, markup=False, highlight=False)
+
+
+def _text(numbers: dict[str, float]) -> str:
+    return "  ".join(f"{name} {_short(value)}" for name, value in numbers.items() if math.isfinite(value))
 
 
 def _short(value: float) -> str:

@@ -5,6 +5,7 @@ import time
 from pathlib import Path
 from typing import Any, Literal
 
+from agents import machine
 from agents.checks import (
     BadInputError,
     check_bounds,
@@ -66,12 +67,15 @@ def main() -> None:
 
     arguments = tyro.cli(SearchArguments)
     folder, config = _started(arguments)
-    # Stable-Baselines3 takes seconds to import: not before the arguments are known to be good
-    import yaml
+    from agents.progress import Bar
 
-    from agents.cmaes import Search
+    with Bar("starting"):
+        # Stable-Baselines3 takes seconds to import: not before the arguments are known to be good
+        import yaml
 
-    search = Search(folder, config)
+        from agents.cmaes import Search
+
+        search = Search(folder, config)
     (folder / "search.yml").write_text(yaml.safe_dump(config, sort_keys=False))
     print(f"Searching {search.gait.name}, {len(search.gait.parameters)} numbers, on {config['env']}, into {folder}")
     try:
@@ -89,6 +93,7 @@ def _started(arguments: SearchArguments) -> tuple[Path, dict[str, Any]]:
     config = {key: value for key, value in dataclasses.asdict(arguments).items() if key not in ("out", "folder")}
     if arguments.evaluations is arguments.minutes is None:
         config["evaluations"] = DEFAULT_EVALUATIONS
+    config |= machine.describe()
     check_bounds(config, LOWEST)
     check_seeds("seed", config["seed"], 1, RUNS)
     check_seeds("evaluation_seed", config["evaluation_seed"], config["evaluation_episodes"], VALIDATION)

@@ -1,8 +1,6 @@
 """Train an agent: ``python -m agents.train --env elastica_gym/SnakeForward-v1 --algo ppo``."""
 
 import dataclasses
-import importlib.metadata
-import platform
 import time
 from pathlib import Path
 from typing import Any
@@ -18,8 +16,6 @@ from agents.checks import (
 )
 from agents.run_files import BEST
 from agents.seeds import RUNS, VALIDATION, check_seeds
-
-VERSIONS = ("elastica-gym", "stable-baselines3", "torch", "numpy", "numba", "gymnasium")
 
 
 @dataclasses.dataclass
@@ -77,14 +73,17 @@ def main() -> None:
     import tyro
 
     arguments = tyro.cli(TrainArguments)
-    folder, config = _resumed(arguments) if arguments.resume else _started(arguments)
-    # torch takes seconds to import: not before the arguments are known to be good
-    import yaml
+    from agents.progress import Bar
 
-    from agents.checkpoints import write_atomically
-    from agents.training import Training
+    with Bar("starting"):
+        folder, config = _resumed(arguments) if arguments.resume else _started(arguments)
+        # torch takes seconds to import: not before the arguments are known to be good
+        import yaml
 
-    training = Training(folder, config, resume=arguments.resume is not None)
+        from agents.checkpoints import write_atomically
+        from agents.training import Training
+
+        training = Training(folder, config, resume=arguments.resume is not None)
     # what the environment or the algorithm refuses does not get this far, and leaves the folder free
     text = yaml.safe_dump(config, sort_keys=False)
     write_atomically(folder / "config.yml", lambda path: path.write_text(text))
@@ -113,7 +112,7 @@ def _resume_command(folder: Path) -> str:
 
 def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     """Check the arguments of a new run and make its folder; return that and what goes into its config.yml."""
-    from agents import hyperparameters
+    from agents import hyperparameters, machine
 
     choose_environment(arguments.env)
     overrides = hyperparameters.parse_overrides(arguments.set)
@@ -126,7 +125,7 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
         "config": arguments.config and str(arguments.config),
         "steps": hyperparameters.timesteps(values) if arguments.steps is arguments.minutes is None else arguments.steps,
         "hyperparameters": values,
-        "versions": {"python": platform.python_version(), **_versions()},
+        **machine.describe(),
     }
     _check(config)
     folder = arguments.folder or _new_folder(arguments)
@@ -152,10 +151,13 @@ _NOT_IN_CONFIG = {"set", "n_envs", "out", "folder", "resume"}
 
 def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     """Read the config.yml of a run, with the budget that the arguments may extend."""
+    from agents import hyperparameters
     from agents.policies import read_config
 
     assert arguments.resume is not None
     config = read_config(arguments.resume)
+    # a file, which may have been edited
+    config["hyperparameters"] = hyperparameters.checked(config["algo"], config["hyperparameters"])
     if arguments.steps is not None or arguments.minutes is not None:
         config |= {"steps": arguments.steps, "minutes": arguments.minutes}
     _check(config)
@@ -176,16 +178,6 @@ def _check(config: dict[str, Any]) -> None:
 def _new_folder(arguments: TrainArguments) -> Path:
     name = f"{arguments.algo}-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
     return arguments.out / arguments.env.rpartition("/")[2] / name
-
-
-def _versions() -> dict[str, str]:
-    found = {}
-    for package in VERSIONS:
-        try:
-            found[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:  # a bare clone that was not installed
-            continue
-    return found
 
 
 if __name__ == "__main__":

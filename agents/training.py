@@ -19,12 +19,12 @@ from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.running_mean_std import RunningMeanStd
-from stable_baselines3.common.utils import safe_mean
 from stable_baselines3.common.vec_env import VecNormalize
 
 from agents import cards, curves, transfer
 from agents.checkpoints import checkpoint_folders, last_whole_checkpoint, write_atomically, write_checkpoint
 from agents.checks import BadInputError
+from agents.episodes import Episodes
 from agents.evaluate import evaluate, record
 from agents.hyperparameters import algorithm_arguments, algorithm_class, normalize_arguments
 from agents.imitation import CRITIC_UPDATES, critic_alone, imitate
@@ -111,6 +111,9 @@ class Training:
         # the model has seeded them with its own seed and those that follow, of which runs would share most
         self.adapter.seed(training_seeds(config["seed"], 0, self.adapter.num_envs))
         self.model.set_logger(Logger(folder=None, output_formats=[]))
+        self.episodes = Episodes(
+            longest=self.adapter.batch.max_episode_steps, window=self.model._stats_window_size
+        )
         if checkpoint is not None:
             saved = self._load_state(checkpoint)
         self.metrics = Table(folder / METRICS, size=saved["table_sizes"][0])
@@ -192,6 +195,7 @@ class Training:
             "python": random.getstate(),
             "action_space": self.model.action_space.np_random.bit_generator.state,
             "imitated": self._imitated,
+            "episodes": self.episodes.get_state(),
             "seconds": self.budget.seconds,
             "table_sizes": (self.metrics.size, self.evaluations.size),
         }
@@ -202,6 +206,7 @@ class Training:
     def _load_state(self, checkpoint: Path) -> dict[str, Any]:
         state = pickle.loads((checkpoint / "state.pkl").read_bytes())
         self.adapter.set_state(state["environment"])
+        self.episodes.set_state(state["episodes"])
         normalize = self.model.get_vec_normalize_env()
         if normalize is not None:
             normalize.returns = state["discounted_returns"]
@@ -289,7 +294,7 @@ class Training:
     def _begin(self) -> BaseCallback:
         resumed = self.model.num_timesteps > 0
         _, callback = self.model._setup_learn(
-            self.config["steps"] or 2**62, callback=None, reset_num_timesteps=not resumed
+            self.config["steps"] or 2**62, callback=self.episodes, reset_num_timesteps=not resumed
         )
         self._checkpoint_at = self.budget.seconds
         if resumed:
@@ -304,17 +309,15 @@ class Training:
 
     def _measure(self, steps_per_second: float) -> None:
         """Append what this iteration came to to metrics.csv and to the display."""
-        episodes = self.model.ep_info_buffer
-        means = {key: float(safe_mean([e[key] for e in episodes])) for key in ("r", "l", "distance")}
         row = {
             "steps": self.model.num_timesteps,
             "seconds": self.budget.seconds,
             "steps_per_second": steps_per_second,
-            "return": means["r"],
-            "length": means["l"],
-            "distance": means["distance"],
-            "success": float(safe_mean(self.model.ep_success_buffer)),
-            **{term: float(safe_mean([e[term] for e in episodes])) for term in self.adapter.term_keys},
+            "return": self.episodes.mean("r"),
+            "length": self.episodes.mean("l"),
+            "distance": self.episodes.mean("distance"),
+            "success": self.episodes.mean("success"),
+            **{term: self.episodes.mean(term) for term in self.adapter.term_keys},
             **dict.fromkeys(UPDATE_COLUMNS[type(self.model)]),
             **{key.removeprefix("train/"): _plain(v) for key, v in self.model.logger.name_to_value.items()},
         }

@@ -28,7 +28,7 @@ class Arguments:
 
 def count(env_id: str, arguments: Arguments) -> tuple[int, int, float]:
     """Return the divergences, the control steps they happened in, and the time step of the physics [s]."""
-    from tqdm import tqdm
+    from agents.progress import track
 
     n = arguments.n_envs
     try:
@@ -38,7 +38,7 @@ def count(env_id: str, arguments: Arguments) -> tuple[int, int, float]:
     env.reset(seed=arguments.seed)
     rng = np.random.default_rng(arguments.seed)
     diverged, rounds = 0, -(-arguments.steps // n)
-    for _ in tqdm(range(rounds), desc=env_id):
+    for _ in track(range(rounds), env_id):
         info = env.step(rng.uniform(-1.0, 1.0, env.action_space.shape))[4]
         if "final_info" in info:
             diverged += int(np.sum(info["final_info"]["termination_reason"] == TerminationReason.DIVERGED))

@@ -11,7 +11,7 @@ import gymnasium
 import numpy as np
 
 import elastica_gym  # noqa: F401  registers the environments
-from agents.checks import require_extra, run_command
+from agents.checks import make_folder, require_extra, run_command
 from elastica_gym.muscles import DIRECTIONS, LEVELS, N_ACTIVATIONS, N_ARMS, N_FUNCTIONS
 
 if TYPE_CHECKING:
@@ -32,8 +32,8 @@ def main() -> None:
     default = Path(__file__).parents[1] / "docs" / "images" / "activations.png"
     parser.add_argument("--output", type=Path, default=default, help="where to write the picture")
     output: Path = parser.parse_args().output
+    make_folder(output.parent)
     figure = draw()
-    output.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(output, dpi=110)
     print(f"wrote {output}")
 
@@ -61,8 +61,8 @@ def draw() -> "Figure":
             ax.set_xticks([])
             ax.set_yticks([])
             ax.set_title(f"{number}: level {level}.{i}", fontsize=8)
-        view = ("from above", "from the side", "turn about its axis, tip to tip")[row]
-        axes[row, 0].set_ylabel(f"{direction}: {EFFECT[direction]}\n({view})", fontsize=8)
+        view = ("from above", "from the side", "angle, tip to tip")[row]
+        axes[row, 0].set_ylabel(f"{direction}:\n{EFFECT[direction]}\n({view})", fontsize=8)
     return figure
 
 

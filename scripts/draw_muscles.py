@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.checks import require_extra, run_command
+from agents.checks import make_folder, require_extra, run_command
 from elastica_gym.bodies import snake
 from elastica_gym.bodies.body import Body
 from elastica_gym.muscles import DIRECTIONS, LEVELS, basis
@@ -29,8 +29,8 @@ def main() -> None:
     default = Path(__file__).parents[1] / "docs" / "images" / "muscles.png"
     parser.add_argument("--output", type=Path, default=default, help="where to write the picture")
     output: Path = parser.parse_args().output
+    make_folder(output.parent)
     figure = draw(snake())
-    output.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(output, dpi=160)
     print(f"wrote {output}")
 

@@ -15,8 +15,9 @@ from PIL import Image
 
 import elastica_gym  # noqa: F401  (registers the environments)
 from agents.checks import BadInputError
+from agents.progress import track
 from elastica_gym.viz import Policy, Rollout, Stage, framing, run_rollout
-from elastica_gym.viz.frames import animal_of, objects, outline, trail
+from elastica_gym.viz.frames import animal_of, home, objects, outline, trail
 
 ENVS = {"snake": "elastica_gym/SnakeForward-v1", "octopus": "elastica_gym/OctopusCrawl-v1"}
 OUTPUT = Path(__file__).parents[1] / "docs" / "images" / "animals.png"
@@ -39,7 +40,7 @@ def main() -> int:
         parser.error(f"--moments must be at least 1, not {options.moments}")
     try:
         strips = []
-        for animal, env in ENVS.items():
+        for animal, env in track(list(ENVS.items()), "drawing"):
             policy = policy_of(getattr(options, f"{animal}_run"))
             rollout = run_rollout(env, policy, seed=options.seed, duration=options.duration)
             strips.append(draw(rollout, n_moments=options.moments, width=options.size[0], height=options.size[1]))
@@ -71,12 +72,12 @@ def draw(rollout: Rollout, *, n_moments: int, width: int, height: int) -> np.nda
     moments = np.linspace(0, last, n_moments).round().astype(int).tolist()
     strengths = np.linspace(0.35, 1.0, n_moments) if n_moments > 1 else np.ones(1)
     camera = framing(np.concatenate([outline(rollout, moments), rollout.head]), width / height, elevation=-42.0)
-    things = objects(rollout, last)
+    things = [objects(rollout, last), *home(rollout, last)]
     with Stage(width=width, height=height, unit=rollout.body_length) as stage:
-        empty = stage.draw([things], camera).astype(float)
-        picture = overlay(empty, empty, stage.draw([things, trail(rollout, last)], camera), strength=0.55)
+        empty = stage.draw(things, camera).astype(float)
+        picture = overlay(empty, empty, stage.draw([*things, trail(rollout, last)], camera), strength=0.55)
         for moment, strength in zip(moments, strengths, strict=True):
-            drawn = stage.draw([things, animal_of(rollout, moment)], camera)
+            drawn = stage.draw([*things, animal_of(rollout, moment)], camera)
             picture = overlay(picture, empty, drawn, strength=strength)
     return np.round(picture).astype(np.uint8)
 
@@ -97,7 +98,7 @@ def along_x(rollout: Rollout) -> Rollout:
     origin = centre[0] * [1.0, 0.0, 1.0]
     return replace(
         rollout, nodes=(rollout.nodes - origin) @ turn, object_centre=(rollout.object_centre - origin) @ turn,
-        object_axis=rollout.object_axis @ turn,
+        object_axis=rollout.object_axis @ turn, home=None if rollout.home is None else (rollout.home - origin) @ turn,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ a JSON file in <out>/cells, written when it is done: begun again, the command ma
 
 import dataclasses
 import json
+import math
 import shutil
 import subprocess
 import sys
@@ -18,8 +19,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.stats import trim_mean
 
+from agents import machine
 from agents.checkpoints import write_atomically
-from agents.checks import BadInputError, choose, make_folder, require_extra, run_command
+from agents.checks import BadInputError, check_bounds, choose, make_folder, require_extra, run_command
 from agents.run_files import GAIT
 from agents.seeds import TEST
 from elastica_gym.envs import IDS
@@ -35,6 +37,7 @@ LABELS = {"zero": "zero", "random": "random", "scripted": "scripted", "cma": "CM
 """Policies in the order of the table"""
 METRICS = {"returns": "return", "distances": "distance [m]"}
 RESAMPLES = 2000
+LOWEST = {"minutes": 0.001, "seeds": 1, "episodes": 1, "evaluation_seed": 0, "threads": 1}
 
 
 @dataclasses.dataclass
@@ -111,6 +114,7 @@ def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
     from agents.evaluate import evaluate
     from agents.gaits import load_gait
     from agents.policies import Policy, baseline, load_run
+    from agents.progress import Bar
 
     folder = cells / cell.name
     seconds = 0.0 if cell.policy in UNTRAINED else train(cell, arguments, folder)
@@ -124,15 +128,16 @@ def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
     else:
         policy, _ = load_run(folder)
     # as registered, whatever arguments the environment had in training: returns are compared
-    result = evaluate(
-        policy, cell.env_id, episodes=arguments.episodes, seed=arguments.evaluation_seed, n_threads=arguments.threads
-    )
+    with Bar(f"evaluating {cell.name}") as bar:
+        result = evaluate(policy, cell.env_id, episodes=arguments.episodes, seed=arguments.evaluation_seed,
+                          n_threads=arguments.threads, show=bar.show)  # fmt: skip
     found = {
         **dataclasses.asdict(cell),
         "seconds": round(seconds, 1),
         "returns": result.returns.tolist(),
         "distances": result.distances.tolist(),
         "successes": result.successes.tolist(),
+        **machine.describe(),
     }
     text = json.dumps(found)
     write_atomically(cells / f"{cell.name}.json", lambda path: path.write_text(text))
@@ -162,16 +167,27 @@ def check_settings(arguments: Arguments, folder: Path) -> None:
     if not path.exists():
         write_atomically(path, lambda file: file.write_text(json.dumps(mine)))
         return
-    for name, value in json.loads(path.read_text()).items():
-        if mine[name] != value:
+    for name, value in read_json(path, set(names)).items():
+        if name in mine and mine[name] != value:
             raise BadInputError(f"The cells in {folder} have {name} {value}, not {mine[name]}: use another --out.")
+
+
+def read_json(path: Path, keys: set[str]) -> dict[str, Any]:
+    """Return what a file of a table says, which must have some keys."""
+    try:
+        told = json.loads(path.read_text())
+    except ValueError as error:
+        raise BadInputError(f"{path} is damaged, delete it: {error}") from error
+    if not isinstance(told, dict) or not keys <= set(told):
+        raise BadInputError(f"{path} is damaged, delete it: it must have {', '.join(sorted(keys))}.")
+    return told
 
 
 def read_cells(cells: Path) -> dict[tuple[str, str], list[dict[str, Any]]]:
     """Return what there is of each environment and policy: one dictionary a seed."""
     found: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for path in sorted(cells.glob("*.json")):
-        cell = json.loads(path.read_text())
+        cell = read_json(path, {"env", "policy", "seed", "seconds", "successes", *METRICS})
         found.setdefault((cell["env"], cell["policy"]), []).append(cell)
     envs = [env_id.rpartition("/")[2] for env_id in IDS]
     places = {(env, policy): place for place, (env, policy) in enumerate((e, p) for e in envs for p in LABELS)}
@@ -205,6 +221,9 @@ def as_markdown(found: dict[tuple[str, str], list[dict[str, Any]]], settings: di
     lines = [
         f"Interquartile means over {settings['episodes']} unseen episodes of each seed, with bootstrapped 95 % "
         f"intervals; {settings['minutes']:g} min of training or search each, threads: {settings['threads']}.",
+        "Intervals are over seeds of training and episodes. On another CPU, where equal seeds give other episodes, "
+        f"figures are within {math.sqrt(2.0):.1f} times the interval.",
+        f"CPU: {'; '.join(sorted({c.get('cpu', 'not recorded') for cells in found.values() for c in cells}))}.",
         "",
         "| environment | policy | return | distance [m] | success | wall time [min] |",
         "|---|---|---|---|---|---|",
@@ -251,6 +270,7 @@ def main() -> None:
     import tyro
 
     arguments = tyro.cli(Arguments, description=__doc__)
+    check_bounds(dataclasses.asdict(arguments), LOWEST)
     wanted = cells_of(arguments)
     cells = make_folder(arguments.out / "cells")
     check_settings(arguments, arguments.out)
@@ -275,7 +295,7 @@ def write_results(out: Path, cells: Path) -> None:
     found = read_cells(cells)
     if not found:
         return
-    text = as_markdown(found, json.loads((out / "settings.json").read_text()))
+    text = as_markdown(found, read_json(out / "settings.json", {"episodes", "minutes", "threads"}))
     figure = plot(found)
     write_atomically(out / "table.md", lambda path: path.write_text(text))
     write_atomically(out / "table.png", lambda path: curves.save(figure, path))

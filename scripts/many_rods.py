@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tqdm import tqdm
+
+from agents.progress import track
 
 ROOT = Path(__file__).resolve().parents[1]
 PICTURE = ROOT / "docs" / "images" / "many_rods.png"
@@ -130,7 +131,7 @@ def main() -> None:
         parser.error("--rods must be at least 2")
     # compiled, and its files read, before anything is measured
     measure(4)
-    times = np.array([measure(n) for n in tqdm(arguments.rods, unit="run")])
+    times = np.array([measure(n) for n in track(arguments.rods, "measuring")])
     for n, (assembly, step) in zip(arguments.rods, times, strict=True):
         print(f"{n:6d} rods: {1e6 * step:9.1f} us a step, {1e6 * step / n:.2f} us a rod; "
               f"{assembly:.2f} s to declare and finalize, {1e3 * assembly / n:.2f} ms a rod")  # fmt: skip

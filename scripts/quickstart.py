@@ -10,6 +10,8 @@ import tyro
 from rich.console import Console
 from rich.table import Table
 
+from agents.checks import check_bounds, run_command
+from agents.progress import track
 from agents.seeds import TEST
 
 ENV = "elastica_gym/SnakeForward-v1"
@@ -35,6 +37,8 @@ class Arguments:
 def main() -> None:
     """Run the command line."""
     arguments = tyro.cli(Arguments)
+    # before five minutes of training, not after
+    check_bounds(dataclasses.asdict(arguments), {"minutes": 0.001, "seed": 0, "episodes": 1, "evaluation_seed": 0})
     console = Console()
     folder = arguments.out / ENV.split("/")[1] / f"quickstart-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
     console.print(f"A snake of 50 elements learns to crawl: PPO for {arguments.minutes:g} minutes. "
@@ -59,7 +63,7 @@ def compare(console: Console, folder: Path, arguments: Arguments) -> None:
     table = Table(title=f"{ENV}, {arguments.episodes} unseen seeds")
     for column in ("policy", "distance in 10 s (m)", "95 % interval", "return"):
         table.add_column(column, justify="left" if column == "policy" else "right")
-    for name, policy in policies.items():
+    for name, policy in track(list(policies.items()), "comparing on unseen seeds"):
         result = evaluate(policy, ENV, episodes=arguments.episodes, seed=arguments.evaluation_seed)
         mean, half = float(result.distances.mean()), confidence(result.distances)
         table.add_row(name, f"{mean:.3f}", f"{mean - half:.3f} to {mean + half:.3f}", f"{result.returns.mean():.2f}")
@@ -80,4 +84,4 @@ def show_where(console: Console, folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run_command(main)

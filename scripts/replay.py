@@ -66,6 +66,7 @@ def open_window(path: Path, port: int) -> int:
     """Open the recording in a window, or in a viewer that is already open; return when it is closed."""
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise ReplayError(f"there is no display to open a window on; try: python scripts/replay.py {path} --web")
+    print(f"opening {path} in a window; the command ends when that is closed", flush=True)
     return run_viewer([str(path), "--bind", LOOPBACK, "--port", str(port)])
 
 

@@ -5,6 +5,7 @@ import json
 import sys
 from pathlib import Path
 
+from agents import machine
 from agents.checks import make_folder, require_extra, run_command
 
 
@@ -24,7 +25,7 @@ class Arguments:
     target_seed: int = 2020
     """Seed of all targets and initial states."""
     json: Path | None = None
-    """File for the points as JSON."""
+    """File for the points as JSON, and what they were computed with."""
     record: Path | None = None
     """Folder for rerun recordings: of the first episode on each kind of target."""
     env: str = "elastica_gym/OctopusFetch-v1"
@@ -50,7 +51,7 @@ def main() -> int:
     )  # fmt: skip
     print_score(result)
     if arguments.json is not None:
-        arguments.json.write_text(json.dumps(result, indent=2) + "\n")
+        arguments.json.write_text(json.dumps({**result, **machine.describe()}, indent=2) + "\n")
         print(f"wrote {arguments.json}")
     return 1 if result["error"] else 0
 

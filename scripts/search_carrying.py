@@ -14,13 +14,16 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 import elastica_gym  # noqa: F401  registers the environments
-from agents.checks import make_folder, require_extra, run_command
+from agents.checks import BadInputError, check_bounds, make_folder, require_extra, run_command
 from elastica_gym.envs.handling import now
 from elastica_gym.envs.octopus_script import HOME, HOMEWARD, Gait, carry, fetch, see
 
 FETCH = "elastica_gym/OctopusFetch-v1"
 LONGEST = 5.5
 """Duration of a trial [s]"""
+LOWEST = {"generations": 1, "population": 4, "trials": 1, "grabs": 1, "sigma": 1e-6, "seed": 0, "threads": 1}
+MOST = 4096
+"""Environments in a batch"""
 
 
 @dataclasses.dataclass
@@ -54,12 +57,12 @@ def make(n: int, arguments: Arguments) -> Any:
 
 def grabs(arguments: Arguments) -> list[Any]:
     """Return the states of octopuses that have just grabbed their object."""
-    from tqdm import tqdm
+    from agents.progress import track
 
     batch, found = make(arguments.grabs, arguments), []
     batch.reset(seed=arguments.seed)
     goes_on = np.ones(batch.num_envs, dtype=bool)
-    for _ in tqdm(range(batch.max_episode_steps), desc="grabbing", unit="step"):
+    for _ in track(range(batch.max_episode_steps), "grabbing"):
         _, _, terminated, truncated, _ = batch.step(fetch(batch))
         goes_on &= ~(terminated | truncated)
         has_grabbed = goes_on & (now(batch.situation()).grabbed == 1.0)
@@ -145,11 +148,19 @@ def main() -> None:
     import cma
     import tyro
     import yaml
-    from tqdm import tqdm
+
+    from agents.progress import Bar
 
     arguments = tyro.cli(Arguments, description=__doc__)
+    check_bounds(dataclasses.asdict(arguments), LOWEST)
+    if max(arguments.grabs, arguments.population * arguments.trials) > MOST:
+        raise BadInputError(f"grabs, and population times trials, must be at most {MOST}, got {arguments.grabs}, and "
+                            f"{arguments.population * arguments.trials}")  # fmt: skip
     make_folder(arguments.out.parent)
     begin = grabs(arguments)
+    if len(begin) < arguments.trials:
+        raise BadInputError(f"trials must be at most the octopuses that have grabbed their object, {len(begin)} of "
+                            f"{arguments.grabs}, got {arguments.trials}: ask for more grabs")  # fmt: skip
     batch = make(arguments.population * arguments.trials, arguments)
     batch.reset(seed=arguments.seed)
     rng, start = np.random.default_rng(arguments.seed), numbers_of(HOMEWARD)
@@ -159,13 +170,14 @@ def main() -> None:
         start, arguments.sigma,
         {"popsize": arguments.population, "CMA_stds": spread, "seed": 1 + arguments.seed, "verbose": -9},
     )  # fmt: skip
-    progress = tqdm(range(arguments.generations), desc="searching", unit="generation")
-    for _ in progress:
-        candidates = strategy.ask()
-        trials = [begin[i] for i in rng.choice(len(begin), arguments.trials, replace=False)]
-        values, comes_home = worth(batch, [gait_of(np.array(each)) for each in candidates], trials)
-        strategy.tell(candidates, list(-values.mean(axis=1)))
-        progress.set_postfix({"home": f"{comes_home.mean():.0%}", "mean": f"{values.mean():.3f}"})
+    with Bar("searching") as bar:
+        for generation in range(1, arguments.generations + 1):
+            candidates = strategy.ask()
+            trials = [begin[i] for i in rng.choice(len(begin), arguments.trials, replace=False)]
+            values, comes_home = worth(batch, [gait_of(np.array(each)) for each in candidates], trials)
+            strategy.tell(candidates, list(-values.mean(axis=1)))
+            numbers = {"home": float(comes_home.mean()), "mean": float(values.mean())}
+            bar.show(generation / arguments.generations, numbers)
     found = gait_of(np.array(strategy.result.xfavorite))
     table = [np.round(row, 2).tolist() for row in found.table]
     text = {"period": round(found.period, 3), "table": table, "steering": np.round(found.steering, 2).tolist()}

@@ -9,7 +9,7 @@ import ctypes.util
 import os
 import sys
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType, TracebackType
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cosserat.model import Array
-from .rollout import Rollout, element_at, first_nodes
+from .rollout import HOME_RADIUS, Rollout, element_at, first_nodes
 
 Image = NDArray[np.uint8]
 Color = tuple[float, float, float]
@@ -29,6 +29,7 @@ BODY: Color = (0.13, 0.47, 0.44)
 HEAD: Color = (0.92, 0.50, 0.15)
 TARGET: Color = (0.84, 0.27, 0.25)
 OBJECT: Color = (0.95, 0.86, 0.72)
+HOME: Color = (0.29, 0.55, 0.87)
 
 SUPERSAMPLING = 2
 """Pictures are drawn this many times larger and averaged down"""
@@ -211,8 +212,8 @@ class Stage:
 
 
 def figures(rollout: Rollout, moment: int) -> list[Figure]:
-    """Return the figures of the animal, of the objects and of the target at one moment of a rollout."""
-    shown = [animal_of(rollout, moment), objects(rollout, moment)]
+    """Return the figures of the animal, the objects, its home and the target at one moment of a rollout."""
+    shown = [animal_of(rollout, moment), objects(rollout, moment), *home(rollout, moment)]
     if rollout.target is not None:
         shown.append(ball(rollout.target[moment], rollout.target_radius))
     return shown
@@ -232,6 +233,15 @@ def objects(rollout: Rollout, moment: int) -> Figure:
     return Figure(
         begin=begin[moment], end=end[moment], radii=rollout.object_radius, rgba=(*OBJECT, 1.0), is_flat=True
     )
+
+
+def home(rollout: Rollout, moment: int) -> list[Figure]:
+    """Return the figure of the disc that the head has to come back to, or none where there is no such place."""
+    if rollout.home is None:
+        return []
+    begin = rollout.home[[moment]]
+    thick = np.array([0.0, 0.004 * rollout.body_length, 0.0])
+    return [Figure(begin=begin, end=begin + thick, radii=HOME_RADIUS, rgba=(*HOME, 1.0), is_flat=True)]
 
 
 def animal(nodes: Array, radii: Array, elements_per_rod: tuple[int, ...] | None = None, *,
@@ -294,7 +304,8 @@ def ball(centre: Array, radius: float, color: Color = TARGET, alpha: float = 0.6
 
 
 def render_frames(rollout: Rollout, moments: Sequence[int] | None = None, *, has_trail: bool = True,
-                  camera: Camera | None = None, width: int = 960, height: int = 540) -> Image:  # fmt: skip
+                  camera: Camera | None = None, width: int = 960, height: int = 540,
+                  show: Callable[[float], object] | None = None) -> Image:  # fmt: skip
     """Draw moments of a rollout: the animal on the ground, objects and target, a frame for each moment.
 
     Parameters
@@ -308,6 +319,8 @@ def render_frames(rollout: Rollout, moments: Sequence[int] | None = None, *, has
         By default one that sees everything from the first to the last frame.
     width, height : int
         Size of the frames [pixels].
+    show : callable, optional
+        Called after each frame with the fraction of them that is drawn.
 
     Returns
     -------
@@ -320,9 +333,11 @@ def render_frames(rollout: Rollout, moments: Sequence[int] | None = None, *, has
     camera = camera or framing(outline(rollout, picked), width / height)
     frames = np.empty((len(picked), height, width, 3), dtype=np.uint8)
     with Stage(width=width, height=height, unit=rollout.body_length) as stage:
-        for frame, moment in zip(frames, picked, strict=True):
+        for number, (frame, moment) in enumerate(zip(frames, picked, strict=True), start=1):
             shown = figures(rollout, moment)
             frame[:] = stage.draw([*shown, trail(rollout, moment)] if has_trail else shown, camera)
+            if show is not None:
+                show(number / len(picked))
     return frames
 
 
@@ -333,10 +348,10 @@ def outline(rollout: Rollout, moments: Sequence[int]) -> Array:
 
 
 def _around(rollout: Rollout, moment: int) -> Array:
-    """Return the ends of the objects and the target at one moment of a rollout [m], (K, 3)."""
+    """Return the ends of the objects, home and the target at one moment of a rollout [m], (K, 3)."""
     begin, end = rollout.objects()
-    target = np.empty((0, 3)) if rollout.target is None else rollout.target[[moment]]
-    return np.concatenate([begin[moment], end[moment], target])
+    places = [place[[moment]] for place in (rollout.home, rollout.target) if place is not None]
+    return np.concatenate([begin[moment], end[moment], *places])
 
 
 def following(rollout: Rollout, moment: int, aspect: float) -> Camera:

@@ -13,6 +13,7 @@ A recording holds, on the timelines ``step`` and ``sim_time``:
 | ``/animal/normal_force`` | the force that the ground carries, by element [N] |
 | ``/animal/object_force`` | the normal force between objects and body, by element [N], if there are objects |
 | ``/objects`` | a solid cylinder for each object |
+| ``/home`` | a disc on the ground that the head has to come back to, if the task has a home |
 | ``/target`` | a sphere that the head has to enter, if the task has a target |
 | ``/reward/<term>``, ``/return`` | weighted reward of each term, and the sum of all so far |
 | ``/activations/<direction>/<arm>`` | activations of an arm's muscles |
@@ -31,7 +32,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..cosserat.model import Array
-from .rollout import Policy, Rollout, run_rollout
+from .rollout import HOME_RADIUS, Policy, Rollout, run_rollout
 
 if TYPE_CHECKING:
     import rerun as rr
@@ -39,7 +40,8 @@ if TYPE_CHECKING:
 APPLICATION_ID = "elastica_gym"
 
 SCENE = (
-    "ground", "target", "objects", "animal/body", "animal/nodes", "animal/head", "animal/trail", "animal/direction",
+    "ground", "home", "target", "objects", "animal/body", "animal/nodes", "animal/head", "animal/trail",
+    "animal/direction",
 )  # fmt: skip
 """Entities that the view of the scene shows"""
 
@@ -52,6 +54,7 @@ UNLOADED = np.array((178, 208, 196))
 LOADED = np.array((10, 88, 84))
 TOUCHED = np.array((214, 69, 65))
 OBJECT = (196, 174, 140)
+HOME = (74, 140, 222)
 DIRECTION = (74, 163, 223)
 SERIES = ((74, 163, 223), (235, 127, 38), (126, 196, 150), (214, 69, 65), (178, 132, 207), (222, 198, 82))
 """Colours of reward terms"""
@@ -182,7 +185,7 @@ def _columns(stream: "rr.RecordingStream", rollout: Rollout, entity: str, column
 def _view_box(rollout: Rollout) -> tuple[Array, float]:
     """Return centre and width of what there is to see on the ground, (3,) and a length [m]."""
     seen = [points.reshape(-1, 3) for points in (rollout.nodes, *rollout.objects())]
-    seen = [rollout.target, *seen] if rollout.target is not None else seen
+    seen += [place for place in (rollout.home, rollout.target) if place is not None]
     seen = [points for points in seen if points.size]
     low = np.min([points.min(axis=0) for points in seen], axis=0)
     high = np.max([points.max(axis=0) for points in seen], axis=0)
@@ -190,7 +193,7 @@ def _view_box(rollout: Rollout) -> tuple[Array, float]:
 
 
 def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
-    """Log what does not move: axes, ground and target."""
+    """Log what does not move: axes, ground, home and target."""
     rr = _rerun()
     centre, width = _view_box(rollout)
     half, depth = 4.0 * width, 0.01 * rollout.body_length
@@ -203,6 +206,12 @@ def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
         ),
         static=True,
     )  # fmt: skip
+    if rollout.home is not None:
+        disc = rr.Cylinders3D(
+            centers=rollout.home[:1], quaternions=rotations_from_z(np.array([[0.0, 1.0, 0.0]])), radii=[HOME_RADIUS],
+            lengths=[0.004 * rollout.body_length], colors=[HOME], fill_mode="solid",
+        )  # fmt: skip
+        stream.log("home", disc, static=True)
     if rollout.target is not None:
         _columns(stream, rollout, "target", rr.Ellipsoids3D.columns(
             centers=rollout.target, half_sizes=np.full_like(rollout.target, rollout.target_radius),

@@ -15,6 +15,9 @@ from ..muscles import activation_names
 if TYPE_CHECKING:
     from ..envs import BatchEnv
 
+HOME_RADIUS = 0.1
+"""Of the disc that marks home: how near to it the head counts as there [m]"""
+
 Policy = Callable[[Array, Any], Array]
 """Observations (B, d) and the BatchEnv in, actions (B, 42) out"""
 
@@ -57,6 +60,8 @@ class Rollout:
         Position of the target [m], (T, 3), where the task has one.
     target_radius : float
         Radius of the ball that marks it [m].
+    home : Array or None
+        Place on the ground to which the animal has to come back [m], (T, 3), where the task has one.
     rewards : dict of str to Array
         Weighted reward of each term, zero at the start, (T,) each.
     activations : Array
@@ -82,6 +87,7 @@ class Rollout:
     direction: Array | None
     target: Array | None
     target_radius: float
+    home: Array | None = None
     rewards: dict[str, Array]
     activations: Array
     activation_names: tuple[str, ...]
@@ -189,6 +195,7 @@ class Recorder:
             moment = dict(self._moments[-1])
         target = env.target
         moment["target"] = np.full(3, np.nan) if target is None else np.array(target[i])
+        moment["home"] = _home(env, i)
         moment["activations"] = np.array(env.activations[i], dtype=float)
         self._moments.append(moment)
         terms = {} if infos is None else {k[7:]: v[i] for k, v in infos.items() if k.startswith("reward_")}
@@ -209,7 +216,7 @@ class Recorder:
         series = {name: np.stack([m[name] for m in self._moments]) for name in self._moments[0]}
         step = np.arange(len(self._moments), dtype=np.int64)
         terms = dict.fromkeys(term for rewards in self._rewards for term in rewards)
-        target, direction = series.pop("target"), series.pop("direction")
+        target, direction, home = series.pop("target"), series.pop("direction"), series.pop("home")
         return Rollout(
             name=env.spec.id if env.spec else env.task.name,
             body_length=env.body.senses.length,
@@ -222,6 +229,7 @@ class Recorder:
             direction=direction if direction.size else None,
             target=None if np.isnan(target).any() else target,
             target_radius=0.05 * env.body.senses.length,
+            home=home if home.size else None,
             rewards={term: np.array([r.get(term, 0.0) for r in self._rewards]) for term in terms},
             activation_names=activation_names(env.body.arms),
             **series,
@@ -276,6 +284,14 @@ def _direction(env: "BatchEnv", i: int) -> Array:
     forward, right = seen[names.index("goal/forward")], seen[names.index("goal/right")]
     size = max(float(np.hypot(forward, right)), 1e-9)
     return np.array([forward * hx - right * hz, 0.0, forward * hz + right * hx]) / size
+
+
+def _home(env: "BatchEnv", i: int) -> Array:
+    """Return where the animal has to come back to, on the ground, (3,), or (0,) where its task has no such place."""
+    # tasks that show the way home have it first in their goals
+    if "home/forward" not in env.task.goal_names:
+        return np.zeros(0)
+    return np.array([env.goal[i, 0], 0.0, env.goal[i, 1]])
 
 
 def _batch(env: Any) -> "BatchEnv":

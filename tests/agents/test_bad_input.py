@@ -42,14 +42,31 @@ def test_unknown_hyperparameter():
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        (("--set", "learning_rate=fast"), "learning_rate must be a number or 'lin_<number>', got 'fast'"),
+        (("--set", "learning_rate=fast"), "learning_rate must be a number, 0 or more, or 'lin_<number>', got 'fast'"),
+        (("--set", "gamma=abc"), "gamma must be a number from 0 to 1, got 'abc'"),
+        (("--set", "gamma=1.5"), "gamma must be a number from 0 to 1, got 1.5"),
+        (("--set", "n_steps=-3"), "n_steps must be a whole number from 1 to 1,000,000,000, got -3"),
+        (("--set", "n_epochs=2.5"), "n_epochs must be a whole number from 1 to 1,000,000,000, got 2.5"),
+        (("--set", "normalize_advantage=1"), "normalize_advantage must be true or false, got 1"),
+        (("--set", "clip_range=[0.1]"), "clip_range must be a number above 0, or 'lin_<number>', got [0.1]"),
+        (("--set", "policy_kwargs=3"), "policy_kwargs must be a mapping such as {key: value}, or none (null), got 3"),
+        (("--set", "policy_kwargs={net_arc: [8]}"), "key of policy_kwargs 'net_arc'; did you mean 'net_arch'"),
+        (("--set", "policy_kwargs={net_arch: [-8]}"), "net_arch of policy_kwargs must be a list of sizes of layers, or "
+         "dict(pi=[...], vf=[...]), got [-8]"),
+        (("--set", "policy=MlpPolicy", "policy_kwargs=dict(log_std_init='x')"), "log_std_init of policy_kwargs must"),
+        (("--set", "policy=os.path"), "policy must be a subclass of ActorCriticPolicy for ppo, got 'os.path'"),
+        (("--set", "policy=nowhere.Policy"), "There is no policy 'nowhere.Policy'"),
+        (("--algo", "sac", "--set", "train_freq=[2, episode]"), "train_freq must be in steps where n_envs is not 1"),
+        (("--algo", "sac", "--set", "ent_coef=automatic"), "ent_coef must be a number, 0 or more, or 'auto', or "
+         "'auto_<number>', got 'automatic'"),
         (("--set", "gamma"), "Expected KEY=VALUE, got 'gamma'"),
         (("--set", "gamma=["), "The value of gamma is not YAML: '['"),
-        (("--set", "n_timesteps=abc"), "n_timesteps must be a number of environment steps, got 'abc'"),
-        (("--set", "normalize=dict(foo=1)"), "Stable-Baselines3 refuses the hyperparameters: "),
-        (("--set", "policy=Mlp"), "Stable-Baselines3 refuses the hyperparameters"),
+        (("--set", "n_timesteps=abc"), "n_timesteps must be a number of environment steps from 1 to 1,000,000,000"),
+        (("--set", "normalize=dict(norm_ob=True)"), "Unknown key of normalize 'norm_ob'; did you mean 'norm_obs'"),
+        (("--set", "policy=Mlp"), "Unknown policy 'Mlp'; did you mean 'MlpPolicy'"),
+        (("--set", "batch_size=1"), "Stable-Baselines3 refuses the hyperparameters: "),
         (("--set", "env_kwargs={sim_dt: 1.0}"), "The environment refuses its arguments: sim_dt"),
-        (("--n-envs", "0"), "The environment refuses its arguments: num_envs"),
+        (("--n-envs", "0"), "n_envs must be a whole number from 1 to 4,096, got 0"),
         (("--steps", "0"), "steps must be at least 1, got 0"),
         (("--minutes", "0"), "minutes must be at least 0.001, got 0"),
         (("--minutes", "nan"), "minutes must be at least 0.001, got nan"),
@@ -86,6 +103,35 @@ def test_evaluations_that_cannot_be(option, message):
 )
 def test_divergences_that_cannot_be_counted(option, message):
     assert message in refused("scripts.count_divergence", *option)
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (("scripts.make_table", "--episodes", 0), "episodes must be at least 1, got 0"),
+        (("scripts.make_table", "--minutes", "nan"), "minutes must be at least 0.001, got nan"),
+        (("scripts.make_table", "--seeds", 0), "seeds must be at least 1, got 0"),
+        (("scripts.search_carrying", "--grabs", 0), "grabs must be at least 1, got 0"),
+        (("scripts.search_carrying", "--population", 4096, "--trials", 2), "population times trials, must be at most"),
+        (("agents.search", "--population", 5000), "The environment refuses its arguments: num_envs"),
+        (("scripts.quickstart", "--episodes", 0), "episodes must be at least 1, got 0"),
+        (("scripts.starter_kit", "--targets", 0), "targets must be at least 1, got 0"),
+        (("scripts.starter_kit", "--spread", "ark"), "Unknown spread 'ark'; did you mean 'arc'"),
+        (("scripts.make_film", "--name", "octopus_fetch"), "did you mean 'octopus_fetch_dagger'"),
+        (("scripts.make_film", "--every", 0), "every must be at least 1, got 0"),
+        (("scripts.make_film", "--size", 0, 0), "size must be two even numbers up to 2048, got 0 0"),
+        (("scripts.draw_activations", "--output", "/proc/x/y.png"), "Cannot write into the folder /proc/x"),
+        (("scripts.draw_muscles", "--output", "/proc/x/y.png"), "Cannot write into the folder /proc/x"),
+        (("scripts.score", "--policy", "nowhere.py"), "There is no policy nowhere.py"),
+    ],
+)
+def test_scripts_refuse_in_one_line_what_cannot_be(command, message, tmp_path):
+    module, *options = command
+    # what writes somewhere unless told otherwise must not write into the repository
+    out = ("--out", tmp_path) if module.rpartition(".")[2] in ("make_table", "quickstart", "starter_kit") else ()
+    out = ("--folder", tmp_path) if module == "agents.search" else out
+    out = ("--out", tmp_path / "gait.yml") if module == "scripts.search_carrying" else out
+    assert message in refused(module, *options, *out)
 
 
 def test_unknown_spread():
@@ -145,6 +191,13 @@ def test_old_packages(monkeypatch):
     lowest = checks.EXTRAS["viz"]["rerun-sdk"]
     message = f"rerun-sdk 0.25.1rc2 is older than {lowest}: pip install --upgrade 'elastica-gym[viz]'"
     assert checks.missing_extra("viz") == message
+
+
+def test_more_than_fits_into_memory(tmp_path):
+    # more than a process can address, whatever the system promises
+    huge = "--n-envs", 1024, "--set", "n_steps=1000000000"
+    output = refused("agents.train", "--folder", tmp_path, *huge, status=1)
+    assert "error: not enough memory: " in output
 
 
 def test_unwritable_folder():

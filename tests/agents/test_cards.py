@@ -17,7 +17,7 @@ from tests.agents.commands import FORWARD, REACH, ROOT, SMALL_PPO, run
 from tests.agents.test_bad_input import refused
 
 CARD = {"name", "environment", "package", "env_kwargs", "algorithm", "seed", "command", "steps", "wall_time_minutes",
-        "score", "scored_with", "hyperparameters", "versions"}  # fmt: skip
+        "score", "intervals", "scored_with", "scored_on", "trained_on", "hyperparameters", "versions"}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +42,8 @@ def test_a_published_policy_acts_as_its_run(trained, published):
     assert set(card) == CARD
     assert card["environment"] == FORWARD and card["seed"] == 7 and card["score"]["episodes"] == 2
     assert card["steps"] == 40 and "--steps 40" in card["command"] and "n_steps=20" in card["command"]
+    for where in ("scored_on", "trained_on"):
+        assert set(card[where]) == {"cpu", "kernels", "commit"} and "compiled for" in card[where]["cpu"]
     # without the optimizer's two moments of every weight
     assert (published / "a_snake.zip").stat().st_size < 0.6 * (trained / "model.zip").stat().st_size
     assert sorted(path.name for path in published.iterdir()) == ["a_snake.npz", "a_snake.yml", "a_snake.zip"]
@@ -88,6 +90,14 @@ def test_shipped_policies_have_cards_and_load(name):
     assert set(card) == CARD and card["name"] == name
     assert "snake" in name or "octopus" in name
     assert card["score"]["episodes"] >= 100 and card["score"]["first_seed"] >= 2_000_000
+    score = card["score"]
+    for quantity, mean in (("return", "return_mean"), ("distance", "distance_mean"), ("success", "success_rate")):
+        low, high = score["elsewhere95"][quantity]
+        assert low <= score[mean] <= high
+    # of the difference of two independent means, 1.4 times that of either
+    low, high = score["elsewhere95"]["distance"]
+    assert high - low == pytest.approx(2.0 * 2.0**0.5 * score["distance_ci95"], abs=2e-4)
+    assert "another CPU" in card["intervals"]
     normalize = hyperparameters.normalize_arguments(card["hyperparameters"]) or {"norm_obs": False}
     assert normalize.get("norm_obs", True) == (policy.normalization is not None)
     env_kwargs = {**card["env_kwargs"], "duration": 0.2}

@@ -1,13 +1,19 @@
+import json
+import re
+
 import gymnasium
 import numpy as np
 import pytest
+from PIL import Image
 from stable_baselines3 import PPO
 
 from agents import policies
 from agents.checks import BadInputError
 from agents.evaluate import Evaluation, confidence, evaluate, success_interval
+from agents.films import check_film, film
 from agents.vec_env import make_batch_vec_env
 from tests.agents.commands import FORWARD, REACH, run
+from tests.agents.test_bad_input import refused
 
 SHORT = {"duration": 1.0}
 
@@ -70,6 +76,75 @@ def test_intervals():
 def test_a_model_of_another_environment_is_refused():
     with pytest.raises(BadInputError, match="The model observes"):
         evaluate(untrained(REACH), FORWARD, episodes=1, seed=0, env_kwargs=SHORT)
+
+
+def test_where_the_means_are_on_another_cpu():
+    """Of two means over as many independent episodes, one is so near to the other 95 times in 100."""
+    rng, reasons = np.random.default_rng(0), np.full(100, "time_limit", dtype=object)
+    inside = {"return": 0, "distance": 0, "success": 0}
+    for _ in range(400):
+        here, there = rng.normal(0.8, 0.2, (2, 100)), rng.uniform(size=(2, 100)) < 0.8
+        result = Evaluation(np.arange(100), here[0], here[0], here[0], there[0], reasons, {})
+        intervals = result.elsewhere()
+        for name, other in (("return", here[1]), ("distance", here[1]), ("success", there[1])):
+            low, high = intervals[name]
+            inside[name] += low <= other.mean() <= high
+    for name, count in inside.items():
+        assert 0.92 * 400 <= count <= 0.98 * 400, name
+
+
+def test_json_has_every_episode_and_what_it_was_computed_with(tmp_path):
+    path = tmp_path / "new" / "numbers.json"
+    options = "--episodes", 3, "--seed", 7, "--threads", 1, "--json", path
+    output = run("agents.evaluate", "--policy", "random", "--env", FORWARD, *options)
+    assert f"wrote {path}" in output and "\r" not in output
+    told = json.loads(path.read_text(), parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
+    episodes = told["per_episode"]
+    result = evaluate(policies.baseline("random"), FORWARD, episodes=3, seed=7)
+    assert [e["seed"] for e in episodes] == [7, 8, 9]
+    assert [e["return"] for e in episodes] == result.returns.tolist()
+    assert [e["distance"] for e in episodes] == result.distances.tolist()
+    assert [e["length"] for e in episodes] == [200] * 3
+    assert [e["termination"] for e in episodes] == ["time_limit"] * 3
+    assert [e["success"] for e in episodes] == result.successes.tolist()
+    for name, values in result.terms.items():
+        assert [e["terms"][name] for e in episodes] == values.tolist()
+    assert told["return_mean"] == pytest.approx(np.mean([e["return"] for e in episodes]))
+    assert told["arguments"]["threads"] == 1 and told["arguments"]["json"] == str(path)
+    assert "compiled for" in told["cpu"] and re.fullmatch("[0-9a-f]{20}", told["kernels"])
+    assert told["versions"]["numpy"] == np.__version__ and "commit" in told
+    assert told["commit"] is None or re.fullmatch("[0-9a-f]{40}( with changes)?", told["commit"])
+
+
+def test_a_film_of_any_policy(offscreen, tmp_path):
+    path = tmp_path / "new" / "film.mp4"
+    # an episode that soon ends with success
+    which = "--pretrained", "octopus_reach_ppo", "--spread", "arc"
+    output = run("agents.evaluate", *which, "--episodes", 1, "--video", path)
+    assert f"filmed {path} (" in output and "drawing" in output and "\r" not in output
+    assert path.read_bytes()[4:8] == b"ftyp"
+    short = film(policies.baseline("random"), FORWARD, tmp_path / "film.gif", seed=0, size=(64, 48), every=4,
+                 env_kwargs=SHORT)  # fmt: skip
+    with Image.open(short) as picture:
+        assert picture.size == (64, 48) and picture.n_frames == 6 and picture.info["duration"] == 200
+
+
+def test_films_that_cannot_be(tmp_path):
+    bad = "--policy", "zero", "--env", FORWARD, "--video"
+    assert "Unknown kind of film '.mp5'; did you mean '.mp4'" in refused("agents.evaluate", *bad, tmp_path / "a.mp5")
+    assert "Cannot write into the folder /proc/films" in refused("agents.evaluate", *bad, "/proc/films/a.mp4")
+    for size in ((0, 100), (101, 100), (-2, 2), (4096, 2)):
+        with pytest.raises(BadInputError, match="size must be two even numbers up to 2048, got"):
+            check_film(tmp_path / "a.mp4", size)
+
+
+def test_where_nothing_can_draw_the_message_says_what_to_install(tmp_path, monkeypatch):
+    def nothing(*_, **__):
+        raise RuntimeError("MuJoCo cannot draw offscreen (MUJOCO_GL=): neither EGL nor OSMesa is installed")
+
+    monkeypatch.setattr("elastica_gym.viz.Stage", nothing)
+    with pytest.raises(BadInputError, match="no film: MuJoCo cannot draw offscreen"):
+        check_film(tmp_path / "a.mp4", (64, 48))
 
 
 def test_the_command_prints_a_table_and_records(tmp_path):

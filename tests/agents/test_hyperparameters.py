@@ -1,10 +1,15 @@
 import pytest
 import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from stable_baselines3.common.utils import LinearSchedule
+from stable_baselines3.common.vec_env import VecNormalize
 from torch import nn
 
 from agents import hyperparameters
+from agents.allowed_values import ALLOWED
 from agents.checks import EXTRAS, BadInputError
+from agents.vec_env import make_batch_vec_env
 from elastica_gym.envs import IDS
 from tests.agents.commands import FORWARD, ROOT
 
@@ -78,3 +83,55 @@ def test_lowest_versions_are_those_of_the_package():
     assert set(EXTRAS) == set(groups) - {"test", "bench"}
     for extra, packages in EXTRAS.items():
         assert {f"{package}>={lowest}" for package, lowest in packages.items()} == set(groups[extra])
+
+
+@pytest.mark.parametrize("algo", hyperparameters.ALGORITHMS)
+def test_every_key_has_allowed_values(algo):
+    assert set(ALLOWED[algo]) == hyperparameters.valid_keys(algo)
+
+
+def test_numbers_that_yaml_reads_as_texts_are_numbers():
+    overrides = hyperparameters.parse_overrides(["ent_coef=1e-3", "n_timesteps=1e6", "learning_rate=3e-4"])
+    values = hyperparameters.load("ppo", FORWARD, overrides=overrides)
+    assert (values["ent_coef"], values["n_timesteps"], values["learning_rate"]) == (1e-3, 1_000_000, 3e-4)
+    assert isinstance(values["n_timesteps"], int)
+
+
+PLAIN = st.one_of(
+    st.none(), st.booleans(), st.integers(-3, 600), st.floats(), st.text(max_size=8),
+    st.sampled_from(["lin_0.1", "lin_-1", "lin_x", "auto", "auto_0.1", "1e-3", "nan", "1e400", "MlpPolicy", "os.path"]),
+)  # fmt: skip
+INNER = st.dictionaries(st.sampled_from(["net_arch", "pi", "log_std_init", "norm_obs", "activation_fn"]), PLAIN)
+ANYTHING = st.one_of(PLAIN, st.lists(PLAIN, max_size=3), INNER)
+
+
+@pytest.fixture(scope="module")
+def envs():
+    return make_batch_vec_env(FORWARD, n_envs=2, n_threads=1)
+
+
+@pytest.mark.parametrize("algo", hyperparameters.ALGORITHMS)
+@given(data=st.data())
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+def test_what_is_not_refused_in_one_line_makes_a_model(envs, algo, data):
+    base = {"policy": "MlpPolicy", "policy_kwargs": {"net_arch": [4]}, "n_envs": 2, "buffer_size": 500, "n_steps": 5}
+    names = sorted(hyperparameters.valid_keys(algo) - {"env_kwargs", "rollout_buffer_kwargs", "replay_buffer_kwargs"})
+    key = data.draw(st.sampled_from(names))
+    value = data.draw(ANYTHING)
+    values = {k: v for k, v in base.items() if k in hyperparameters.valid_keys(algo)} | {key: value}
+    try:
+        values = hyperparameters.checked(algo, values)
+    except BadInputError as error:
+        assert key in str(error) and "\n" not in str(error)
+        return
+    normalize = hyperparameters.normalize_arguments(values)
+    env = envs if normalize is None else VecNormalize(envs, **normalize)
+    try:
+        model = hyperparameters.algorithm_class(algo)(
+            env=env, seed=0, device="cpu", **hyperparameters.algorithm_arguments(values)
+        )
+    except (AssertionError, ValueError):
+        # which is what remains for Stable-Baselines3: what values cannot be together
+        assert key in ("policy", "batch_size", "n_steps", "use_sde", "optimize_memory_usage", "normalize_advantage")
+        return
+    assert model.gamma == values.get("gamma", 0.99)

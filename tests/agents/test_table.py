@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 
+from agents.checks import BadInputError
 from tests.agents.commands import ROOT, environment
 
 SCRIPT = ROOT / "scripts" / "make_table.py"
@@ -75,7 +76,9 @@ def test_the_table_is_made_cell_by_cell(tmp_path):
     for name, cell in results.items():
         assert len(cell["returns"]) == len(cell["distances"]) == 2
         assert (cell["seconds"] > 0.0) == ("zero" not in name)
+        assert "compiled for" in cell["cpu"] and "commit" in cell
     table = (tmp_path / "table.md").read_text()
+    assert cell["cpu"] in table and "another CPU" in table
     rows = [line.split(" | ") for line in table.splitlines() if line.startswith("| Snake")]
     assert [row[1] for row in rows] == ["zero", "CMA-ES", "PPO"]
     mean, low, high = map(float, re.fullmatch(r"(.*) \((.*) to (.*)\)", rows[1][3]).groups())
@@ -94,6 +97,17 @@ def test_cells_of_other_settings_are_not_mixed(tmp_path):
     message = command("--out", tmp_path, "--minutes", 3, "--episodes", 2, "--only", "zero", status=2)
     assert "have minutes 5.0, not 3.0: use another --out" in message
     assert "'pppo'; did you mean 'ppo'" in command("--out", tmp_path, "--only", "pppo", status=2)
+
+
+@pytest.mark.parametrize("text", ["{", "3", "{}"])
+def test_damaged_files_of_a_table_are_named(tmp_path, text):
+    (tmp_path / "settings.json").write_text(text)
+    message = command("--out", tmp_path, "--only", "zero", status=2)
+    assert f"{tmp_path / 'settings.json'} is damaged, delete it" in message
+    (tmp_path / "cells").mkdir(exist_ok=True)
+    (tmp_path / "cells" / "SnakeForward-v1-zero-0.json").write_text(text)
+    with pytest.raises(BadInputError, match=r"SnakeForward-v1-zero-0\.json is damaged, delete it"):
+        make_table.read_cells(tmp_path / "cells")
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from elastica_gym.viz import Camera, Figure, Stage, framing, render_frames, write_video
-from elastica_gym.viz.frames import animal, animal_of, figures, outline
+from elastica_gym.viz.frames import animal, animal_of, figures, home, outline
 
 SIZE = {"width": 160, "height": 100}
 
@@ -54,6 +54,26 @@ def test_objects_and_a_head_in_the_middle(drawn, octopus):
     # the object is taller on the picture than thick
     seen = np.abs(both.astype(int) - alone).max(axis=-1) > 40
     assert seen.any(axis=1).sum() > seen.any(axis=0).sum() > 4
+
+
+def test_home_is_a_disc_on_the_ground(drawn, octopus):
+    (disc,) = home(octopus, 0)
+    assert disc.begin[0] == pytest.approx(octopus.home[0]) and disc.is_flat
+    camera = Camera(look_at=octopus.home[0], distance=2.0, elevation=-90.0)
+    with Stage(**SIZE) as stage:
+        red, green, blue = np.moveaxis(stage.draw([disc], camera).astype(int), -1, 0)
+        everything = stage.draw(figures(octopus, 0), framing(outline(octopus, [0]), 1.6))
+    blue_is = (blue > red + 40) & (blue > green + 20)
+    metres_per_pixel = 4.0 * np.tan(np.deg2rad(16.0)) / SIZE["height"]
+    for axis in (0, 1):
+        assert blue_is.any(axis=axis).sum() * metres_per_pixel == pytest.approx(0.2, abs=0.04)
+    assert everything.shape == (SIZE["height"], SIZE["width"], 3)
+
+
+def test_a_home_that_was_left_is_in_the_picture(octopus, forward):
+    far = replace(octopus, home=octopus.home + np.array([3.0, 0.0, 0.0]))
+    assert outline(far, [0])[:, 0].max() == pytest.approx(far.home[0, 0])
+    assert home(forward, 0) == []
 
 
 def test_cylinders_end_flat(drawn):

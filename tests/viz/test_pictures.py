@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.agents.test_curves import assert_inside
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -42,3 +44,11 @@ def test_film_of_a_pretrained_policy(tmp_path):
     assert film.size == (120, 80)
     assert film.n_frames > 2
     assert film.info["duration"] == 200
+
+
+def test_labels_of_the_activations_are_not_cut_off(monkeypatch):
+    pytest.importorskip("matplotlib")
+    monkeypatch.syspath_prepend(str(ROOT / "scripts"))
+    import draw_activations
+
+    assert_inside(draw_activations.draw())

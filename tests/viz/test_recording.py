@@ -96,7 +96,7 @@ def test_touch_is_recorded(octopus_recording, octopus):
 
 def test_what_there_is_none_of_is_not_logged(recording, octopus_recording):
     assert {"/animal/head", "/animal/trail", "/animal/direction"} <= entities(recording)
-    assert not {"/objects", "/animal/object_force", "/target"} & entities(recording)
+    assert not {"/objects", "/animal/object_force", "/target", "/home"} & entities(recording)
     # the octopus's head is its thickest part: no ball is to be drawn over it
     assert {"/objects", "/animal/object_force", "/animal/trail", "/animal/direction"} <= entities(octopus_recording)
     assert "/animal/head" not in entities(octopus_recording)
@@ -119,6 +119,17 @@ def test_target(reach, tmp_path):
     path = write_recording(reach, tmp_path / "reach.rrd")
     _, centres = column(path, "/target", "Ellipsoids3D:centers")
     assert centres.flatten().flatten().to_numpy().reshape(-1, 3) == pytest.approx(reach.target, abs=1e-7)
+
+
+def test_home_is_a_disc_on_the_ground(octopus_recording, octopus):
+    (disc,) = rr.chunk.RrdReader(octopus_recording).stream().filter(content="/home", is_static=True).to_chunks()
+    batch = disc.to_record_batch()
+
+    def read(component):
+        return batch.column(f"Cylinders3D:{component}").flatten().to_numpy(zero_copy_only=False)
+
+    assert np.stack(read("centers")).ravel() == pytest.approx(octopus.home[0])
+    assert read("radii") == pytest.approx([0.1])
 
 
 def test_a_blueprint_is_embedded(recording):

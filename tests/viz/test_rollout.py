@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
+from elastica_gym.envs import TASKS, handling
 from elastica_gym.viz import Recorder, run_rollout
+from elastica_gym.viz.rollout import HOME_RADIUS
 
 from .conftest import scripted
 
@@ -145,3 +147,25 @@ def test_bad_arguments():
         run_rollout(make(1, autoreset_mode=AutoresetMode.SAME_STEP), scripted)
     with pytest.raises(RuntimeError, match="capture"):
         Recorder(make(1)).rollout()
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_home_is_where_the_task_has_it(name):
+    env = gymnasium.make_vec(f"elastica_gym/{name}-v1", num_envs=2, vectorization_mode="vector_entry_point")
+    observations, _ = env.reset(seed=3)
+    batch = env.unwrapped
+    rollout = Recorder(env, 1).capture().rollout()
+    names = batch.observation_names
+    assert (rollout.home is not None) == ("home/forward" in names)
+    if rollout.home is None:
+        return
+    # as the animal sees it: forward and right of its head
+    hx, hz = batch.pose.heading[1]
+    x, _, z = rollout.home[0] - batch.pose.head[1]
+    seen = [observations[1, names.index(f"home/{which}")] for which in ("forward", "right")]
+    assert np.array(seen) * batch.body.senses.length == pytest.approx([x * hx + z * hz, z * hx - x * hz], abs=1e-6)
+    assert rollout.home[0, 1] == 0.0
+
+
+def test_the_disc_of_home_is_as_wide_as_being_at_home():
+    assert HOME_RADIUS == handling.AT_HOME
