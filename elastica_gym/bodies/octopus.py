@@ -48,8 +48,8 @@ TORQUE_VISCOSITY = 0.2
 """Torque against angular velocity, per length [kg m/s]: 310 to 650 1/s along the arms and half of it for
 twist, 1 1/s at the head's middle"""
 SIM_DT = 1.25e-4
-"""Time step [s]: at 160 microseconds 3 of 16 diverge within 3 s of full strength in signs that change every 0.4 s, at 125
-none does"""
+"""Time step [s]: at 160 microseconds 3 of 16 diverge within 3 s of full strength whose signs change every 0.4 s; at
+125 none does"""
 
 OBJECT_LENGTH, OBJECT_RADIUS, OBJECT_MASS = 0.6, 0.05, 4.0
 OBJECT_FRICTION = 0.4
