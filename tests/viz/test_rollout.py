@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
-from elastica_gym.envs import TASKS, handling
+from elastica_gym.envs import IDS, handling
 from elastica_gym.viz import Recorder, run_rollout
 from elastica_gym.viz.rollout import HOME_RADIUS
 
@@ -149,9 +149,9 @@ def test_bad_arguments():
         Recorder(make(1)).rollout()
 
 
-@pytest.mark.parametrize("name", TASKS)
-def test_home_is_where_the_task_has_it(name):
-    env = gymnasium.make_vec(f"elastica_gym/{name}-v1", num_envs=2, vectorization_mode="vector_entry_point")
+@pytest.mark.parametrize("env_id", IDS)
+def test_home_is_where_the_task_has_it(env_id):
+    env = gymnasium.make_vec(env_id, num_envs=2, vectorization_mode="vector_entry_point")
     observations, _ = env.reset(seed=3)
     batch = env.unwrapped
     rollout = Recorder(env, 1).capture().rollout()
