@@ -1,5 +1,7 @@
 """Wrapping and touch, told from configurations made by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,9 +16,11 @@ STEP = 1.0 / 120.0
 PLACE = np.array([0.3, 0.3, -0.2])
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def body():
-    return octopus()
+    """Return an octopus with radii of its own, which tests may change."""
+    whole = octopus()
+    return replace(whole, model=whole.model._replace(contact_radius=whole.model.contact_radius.copy()))
 
 
 def first_of(body):
@@ -28,7 +32,7 @@ def apart(body, n_envs=1):
     state = make_state(body.model, n_envs)
     first, rod = first_of(body), body.rods[0]
     state.x[:, 0, first : first + 121] = 5.0 + np.arange(121) * STEP
-    state.radius[:, first : first + 120] = rod.radius
+    body.model.contact_radius[first : first + 120] = rod.radius
     state.body_x[:, 0] = PLACE
     state.body_Q[:, 0] = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]
     return state
@@ -39,8 +43,8 @@ def lay(body, state, i, elements, gap, *, pitch=0.0, turns_back_at=None):
     first, (begin, end) = first_of(body), elements
     radius = body.rods[0].radius[begin]
     # so thin that their neighbours, which end where they begin, do not touch
-    state.radius[i, first : first + 120] = 0.001
-    state.radius[i, first + begin : first + end] = radius
+    body.model.contact_radius[first : first + 120] = 0.001
+    body.model.contact_radius[first + begin : first + end] = radius
     # a chord of a circle is nearer to its centre than the circle
     reach = np.sqrt((RADIUS + radius + gap) ** 2 + (0.5 * STEP) ** 2)
     turn = 2.0 * np.arcsin(0.5 * STEP / reach)
@@ -96,7 +100,7 @@ def test_what_an_arm_on_a_circle_winds(body, gap, near):
 
 def test_more_than_a_full_turn(body):
     state = apart(body)
-    state.radius[:] = 0.01
+    body.model.contact_radius[:] = 0.01
     first = first_of(body)
     reach, turn = RADIUS + 0.01, np.radians(9.0)
     angle = turn * np.arange(51)
@@ -118,7 +122,7 @@ def test_what_goes_in_too_deep_does_not_touch(body):
     assert grip(body, state).counts[0, 0] == 40
     # one element alone
     first = first_of(body)
-    state.radius[0, first + 20] += DEEPEST
+    body.model.contact_radius[first + 20] += DEEPEST
     found = grip(body, state)
     assert found.gaps.min() == pytest.approx(-0.001 - DEEPEST)
     assert not found.touching.any() and not found.counts.any() and not found.spans.any()
@@ -129,7 +133,7 @@ def test_the_span_counts_what_lies_between(body):
     state = apart(body)
     turn = lay(body, state, 0, (3, 43), -0.001)
     first = first_of(body)
-    state.radius[0, first + 6 : first + 40] -= 0.01
+    body.model.contact_radius[first + 6 : first + 40] -= 0.01
     found = grip(body, state)
     assert found.counts[0, 0] == 6
     assert found.spans[0, 0] == pytest.approx(39 * turn)
@@ -147,7 +151,7 @@ def test_a_straight_arm_beside_the_object_wraps_little(body):
     first = first_of(body)
     state.x[0, :, first : first + 51] = [PLACE[0] + STEP * (np.arange(51) - 25), np.full(51, PLACE[1]),
                                          np.full(51, PLACE[2] + RADIUS + 0.025)]  # fmt: skip
-    state.radius[0, first : first + 50] = 0.025
+    body.model.contact_radius[first : first + 50] = 0.025
     found = grip(body, state)
     assert 1 < found.counts[0, 0] < 8
     assert np.degrees(found.spans[0, 0]) < 40.0

@@ -218,7 +218,7 @@ def _meet_body(law: Any, rod: Any, body: Any, edge: Array, radius: float) -> Non
         u = _axis_velocity(rod, k, s) + np.cross(_spin(rod, k), arm)
         u = u - body.velocity_collection[:, 0] - np.cross(spin, body_arm)
         N = max(law.k * g + law.nu * u @ n, 0.0)
-        slip = u - (u @ n) * n
+        slip = u - (u @ n) / (n @ n) * n
         most = law.friction_coefficient * N
         rub = min(law.velocity_damping_coefficient, most / np.linalg.norm(slip)) * slip if slip.any() else 0.0 * slip
         f = N * n + rub

@@ -67,7 +67,9 @@ def normal_force(g, approach, stiffness, damping):
 @inner
 def friction_force(n, u, N, friction, slip_damping):
     """Return the friction on the second, min(c |u_t|, mu N) along u_t, of surfaces whose velocities differ by u."""
-    slip = plus(u, -dot(u, n), n)
+    # n is shorter than one by as much as the points are drawn from where they are closest
+    nn = dot(n, n)
+    slip = plus(u, -dot(u, n) / nn if nn > 0.0 else 0.0, n)
     speed = norm(slip)
     drag = slip_damping * speed
     drag = drag if drag < friction * N else friction * N
