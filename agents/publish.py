@@ -1,4 +1,4 @@
-"""Make a pretrained policy from a run: ``python -m agents.publish --run DIR --name snake_forward_ppo``."""
+"""Make a pretrained policy from a run: ``python -m agents.publish --name snake_forward_ppo --run DIR``."""
 
 import dataclasses
 import re
@@ -12,6 +12,7 @@ from agents.seeds import TEST
 
 if TYPE_CHECKING:
     from agents.evaluate import Evaluation
+    from agents.policies import TrainedPolicy
 
 MACHINE = ("cpu", "kernels", "commit")
 """What a card says of the machine"""
@@ -27,10 +28,10 @@ INTERVALS = (
 class PublishArguments:
     """Evaluate a run of agents.train on unseen episodes, and keep its policy with a card that says what it is."""
 
-    run: Path
-    """Folder of the run."""
     name: str
     """Name of the policy: lower case, with snake or octopus in it."""
+    run: Path | None = None
+    """Folder of the run; if omitted, a policy that is kept already is scored again, as environments may change."""
     episodes: int = 100
     """Episodes of the score."""
     seed: int = TEST.start
@@ -52,26 +53,44 @@ def main() -> None:
             f"name must be of lower-case letters, digits and _, with snake or octopus in it, got {arguments.name!r}"
         )
     from agents.cards import write_pretrained
-    from agents.evaluate import evaluate, print_table
-    from agents.policies import load_run
-    from agents.progress import Bar
 
-    policy, config = load_run(arguments.run)
     make_folder(arguments.out)
-    with Bar(f"evaluating {arguments.episodes} episodes") as bar:
-        result = evaluate(
-            policy,
-            config["env"],
-            episodes=arguments.episodes,
-            seed=arguments.seed,
-            n_threads=arguments.threads,
-            env_kwargs=config["hyperparameters"].get("env_kwargs"),
-            show=bar.show,
-        )
-    print_table(f"{arguments.name}, {arguments.episodes} episodes from seed {arguments.seed}", result)
-    card = card_of(arguments.name, arguments.run, config, policy.model.num_timesteps, result)
+    policy, card = _published(arguments) if arguments.run is None else _from_run(arguments, arguments.run)
     for path in write_pretrained(arguments.out, arguments.name, policy, card):
         print(f"wrote {path} ({path.stat().st_size / 1000:.0f} kB)")
+
+
+def _from_run(arguments: PublishArguments, run: Path) -> "tuple[TrainedPolicy, dict[str, Any]]":
+    """Return the policy of a run and its card."""
+    from agents.policies import load_run
+
+    policy, config = load_run(run)
+    result = _evaluate(arguments, policy, config["env"], config["hyperparameters"].get("env_kwargs"))
+    return policy, card_of(arguments.name, run, config, policy.model.num_timesteps, result)
+
+
+def _published(arguments: PublishArguments) -> "tuple[TrainedPolicy, dict[str, Any]]":
+    """Return a policy that is kept already, and its card with a new score."""
+    from agents.cards import load_pretrained
+
+    policy, card = load_pretrained(arguments.name, arguments.out)
+    result = _evaluate(arguments, policy, card["environment"], card["env_kwargs"])
+    return policy, {**card, **score_of(arguments.name, result)}
+
+
+def _evaluate(
+    arguments: PublishArguments, policy: "TrainedPolicy", env_id: str, env_kwargs: dict[str, Any] | None
+) -> "Evaluation":
+    from agents.evaluate import evaluate, print_table
+    from agents.progress import Bar
+
+    with Bar(f"evaluating {arguments.episodes} episodes") as bar:
+        result = evaluate(
+            policy, env_id, episodes=arguments.episodes, seed=arguments.seed, n_threads=arguments.threads,
+            env_kwargs=env_kwargs, show=bar.show,
+        )  # fmt: skip
+    print_table(f"{arguments.name}, {arguments.episodes} episodes from seed {arguments.seed}", result)
+    return result
 
 
 def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "Evaluation") -> dict[str, Any]:
@@ -81,9 +100,6 @@ def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "E
 
     folder = run.parent if run.name == BEST else run
     seconds = [read_table(folder / name).get("seconds", [0.0])[-1] for name in (METRICS, EVALUATIONS)]
-    summary, scored = result.summary(), machine.describe()
-    scores = ("episodes", "first_seed", "success_rate", "success_interval95", "distance_mean", "distance_ci95",
-              "return_mean", "return_ci95", "elsewhere95")  # fmt: skip
     return {
         "name": name,
         "environment": config["env"],
@@ -94,14 +110,24 @@ def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "E
         "command": command_of(config),
         "steps": int(steps),
         "wall_time_minutes": round(float(max(seconds)) / 60.0, 1),
+        **score_of(name, result),
+        "trained_on": {key: config.get(key, "not recorded") for key in MACHINE},
+        "hyperparameters": config["hyperparameters"],
+        "versions": config.get("versions", {}),
+    }
+
+
+def score_of(name: str, result: "Evaluation") -> dict[str, Any]:
+    """Return what the card says of an evaluation."""
+    summary, scored = result.summary(), machine.describe()
+    scores = ("episodes", "first_seed", "success_rate", "success_interval95", "distance_mean", "distance_ci95",
+              "return_mean", "return_ci95", "elsewhere95")  # fmt: skip
+    return {
         "score": {key: _rounded(summary[key]) for key in scores},
         "intervals": INTERVALS,
         "scored_with": f"python -m agents.evaluate --pretrained {name} --episodes {summary['episodes']} "
         f"--seed {summary['first_seed']}",
         "scored_on": {key: scored[key] for key in MACHINE},
-        "trained_on": {key: config.get(key, "not recorded") for key in MACHINE},
-        "hyperparameters": config["hyperparameters"],
-        "versions": config.get("versions", {}),
     }
 
 
