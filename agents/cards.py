@@ -83,9 +83,15 @@ def write_pretrained(folder: Path, name: str, policy: TrainedPolicy, card: dict[
     paths[1].unlink(missing_ok=True)
     if policy.normalization is not None:
         _write_statistics(paths[1], policy.normalization)
-    text = yaml.safe_dump(card, sort_keys=False, width=120)
-    write_atomically(paths[2], lambda path: path.write_text(text))
+    write_card(folder, name, card)
     return [path for path in paths if path.exists()]
+
+
+def write_card(folder: Path, name: str, card: dict[str, Any]) -> Path:
+    """Write the card of a policy, and return its file."""
+    text, path = yaml.safe_dump(card, sort_keys=False, width=120), folder / f"{name}.yml"
+    write_atomically(path, lambda path: path.write_text(text))
+    return path
 
 
 def _optimizers(model: Any) -> list[Any]:

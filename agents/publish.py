@@ -52,30 +52,29 @@ def main() -> None:
         raise BadInputError(
             f"name must be of lower-case letters, digits and _, with snake or octopus in it, got {arguments.name!r}"
         )
-    from agents.cards import write_pretrained
-
     make_folder(arguments.out)
-    policy, card = _published(arguments) if arguments.run is None else _from_run(arguments, arguments.run)
-    for path in write_pretrained(arguments.out, arguments.name, policy, card):
+    for path in _score_again(arguments) if arguments.run is None else _publish(arguments, arguments.run):
         print(f"wrote {path} ({path.stat().st_size / 1000:.0f} kB)")
 
 
-def _from_run(arguments: PublishArguments, run: Path) -> "tuple[TrainedPolicy, dict[str, Any]]":
-    """Return the policy of a run and its card."""
+def _publish(arguments: PublishArguments, run: Path) -> list[Path]:
+    """Score the policy of a run and write it with its card; return the files."""
+    from agents.cards import write_pretrained
     from agents.policies import load_run
 
     policy, config = load_run(run)
     result = _evaluate(arguments, policy, config["env"], config["hyperparameters"].get("env_kwargs"))
-    return policy, card_of(arguments.name, run, config, policy.model.num_timesteps, result)
+    card = card_of(arguments.name, run, config, policy.model.num_timesteps, result)
+    return write_pretrained(arguments.out, arguments.name, policy, card)
 
 
-def _published(arguments: PublishArguments) -> "tuple[TrainedPolicy, dict[str, Any]]":
-    """Return a policy that is kept already, and its card with a new score."""
-    from agents.cards import load_pretrained
+def _score_again(arguments: PublishArguments) -> list[Path]:
+    """Score a policy that is kept already, and write the score into its card; return its file."""
+    from agents.cards import load_pretrained, write_card
 
     policy, card = load_pretrained(arguments.name, arguments.out)
     result = _evaluate(arguments, policy, card["environment"], card["env_kwargs"])
-    return policy, {**card, **score_of(arguments.name, result)}
+    return [write_card(arguments.out, arguments.name, {**card, **score_of(arguments.name, result)})]
 
 
 def _evaluate(

@@ -49,6 +49,17 @@ def test_a_published_policy_acts_as_its_run(trained, published):
     assert sorted(path.name for path in published.iterdir()) == ["a_snake.npz", "a_snake.yml", "a_snake.zip"]
 
 
+def test_a_policy_is_scored_again_and_else_stays_as_it_is(published, tmp_path):
+    shutil.copytree(published, tmp_path, dirs_exist_ok=True)
+    output = run("agents.publish", "--name", "a_snake", "--episodes", 3, "--seed", 2_000_007, "--out", tmp_path)
+    old, new = cards.read_card("a_snake", published), cards.read_card("a_snake", tmp_path)
+    assert "a_snake.yml" in output and "--episodes 3 --seed 2000007" in new["scored_with"]
+    assert (new["score"]["episodes"], new["score"]["first_seed"]) == (3, 2_000_007)
+    changed = {"score", "scored_with"}
+    assert {key: new[key] for key in CARD - changed} == {key: old[key] for key in CARD - changed}
+    assert (tmp_path / "a_snake.zip").read_bytes() == (published / "a_snake.zip").read_bytes()
+
+
 def test_the_commands_of_cards_set_what_the_run_had(trained):
     import shlex
 
