@@ -29,7 +29,7 @@ places = st.floats(-4.99, 4.99)
 
 
 class Collision(NamedTuple):
-    """Energy before, the largest and the least after [J], and how long they touched, in steps."""
+    """Energy before, the largest and the least after they have parted [J], and how long they touched, in steps."""
 
     before: float
     most: float
@@ -60,13 +60,16 @@ def collide(rods: list[Rod], velocities: list[Array], law: Contact, dt: float, c
         return found
 
     before, touched, apart, after = total(), 0, 0, []
-    while apart < 1000 and touched < 40_000:
+    for _ in range(2000):
+        if apart >= 1000:
+            break
         advance(model, state, control, 0, 1, dt, 20)
         if state.rod_touch.max() + state.body_touch.max() > 0.0:
             touched, apart, after = touched + 20, 0, []
         elif touched:
             apart += 20
             after.append(total())
+    assert apart >= 1000
     return Collision(before, max(after), min(after), touched)
 
 
@@ -77,7 +80,7 @@ def law_for(rod: Rod) -> tuple[Contact, float]:
 
 
 def require_kept(found: Collision) -> None:
-    assert 0 < found.steps < 40_000
+    assert found.steps > 0
     assert found.most < 1.01 * found.before
     assert found.least > 0.99 * found.before
 
@@ -108,7 +111,9 @@ def test_rod_and_cylinder(ratio, place, along, turn):
     """Which it strikes between its ends and at the domes beyond them."""
     rods = [rod_across(ratio, place, X, np.zeros(3))]
     law, dt = law_for(rods[0])
-    axis, r, half = np.array([np.cos(turn), 0.0, np.sin(turn)]), 3.0 * R, 4.0 * R
+    r, half = 3.0 * R, 4.0 * R
+    # at a dome, the rod runs across the axis
+    axis = Z if abs(along) > 1.0 else np.array([np.cos(turn), 0.0, np.sin(turn)])
     beyond = max(abs(along) - 1.0, 0.0) * half
     centre = np.array([0.0, np.sqrt((R + r) ** 2 - beyond**2) + GAP, 0.0]) - along * half * axis
     body = Cylinder(start=tuple(centre - half * axis), direction=tuple(axis), normal=(0.0, 1.0, 0.0), length=2.0 * half,
@@ -134,9 +139,8 @@ def test_rod_and_sphere(ratio, place):
         return (rod.compute_translational_energy() + rod.compute_rotational_energy() + rod.compute_bending_energy()
                 + rod.compute_shear_energy() + ball.compute_translational_energy() + ball.compute_rotational_energy())
 
-    before, stepper = float(total()), ea.PositionVerlet()
-    for _ in range(400):
-        ea.integrate(stepper, made, 100 * dt, 100, progress_bar=False)
+    before = float(total())
+    ea.integrate(ea.PositionVerlet(), made, 30_000 * dt, 30_000, progress_bar=False)
     assert ball.velocity_collection[1, 0] > 0.1 * SPEED
     assert float(total()) == pytest.approx(before, rel=0.01)
 

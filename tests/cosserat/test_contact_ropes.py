@@ -19,7 +19,7 @@ class Simulator(ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Contact,
     pass
 
 
-def add_rope(sim: Simulator, nodes: Array, radius: float, damping: float, dt: float = 1.0) -> ea.CosseratRod:
+def add_rope(sim: Simulator, nodes: Array, radius: float, damping: float) -> ea.CosseratRod:
     """Add a rope through nodes, with its weight, which is straight at rest."""
     edges = np.diff(nodes, axis=1)
     tangent = edges[:, 0] / np.linalg.norm(edges[:, 0])
@@ -29,8 +29,14 @@ def add_rope(sim: Simulator, nodes: Array, radius: float, damping: float, dt: fl
     )  # fmt: skip
     sim.append(rope)
     sim.add_forcing_to(rope).using(ea.GravityForces, GRAVITY)
+    dt = step_of(rope)
     sim.dampen(rope).using(ea.AnalyticalLinearDamper, uniform_damping_constant=damping, time_step=dt)
     return rope
+
+
+def step_of(rope: ea.CosseratRod) -> float:
+    """Return half the stable step of a rope [s]."""
+    return 0.5 * ea.stable_time_step(rope)
 
 
 def run(sim: Simulator, dt: float, duration: float) -> None:
@@ -64,7 +70,7 @@ def test_crossing_ropes_stay_where_statics_puts_them(n, within):
     ropes = [add_rope(sim, nodes, radius, damping=5.0) for nodes in (below, above)]
     for rope in ropes:
         sim.constrain(rope).using(ea.FixedConstraint, constrained_position_idx=(0, -1))
-    dt, m = 0.5 * ea.stable_time_step(ropes[0]), ropes[0].mass[1]
+    dt, m = step_of(ropes[0]), ropes[0].mass[1]
     sim.detect_contact_between(*ropes).using(ea.RodRodContact, k=0.05 * m / dt**2, nu=0.05 * m / dt)
     sim.finalize()
     run(sim, dt, 6.0)
@@ -143,7 +149,7 @@ def test_a_pile_of_ropes_comes_to_rest(stiffness, damping):
                               radius, damping=10.0))  # fmt: skip
     ground = ea.Plane(np.zeros(3), Y)
     sim.append(ground)
-    dt, m = 0.5 * ea.stable_time_step(ropes[0]), ropes[0].mass[1]
+    dt, m = step_of(ropes[0]), ropes[0].mass[1]
     law = dict(k=stiffness * m / dt**2, nu=damping * m / dt)
     for number, rope in enumerate(ropes):
         sim.detect_contact_between(rope, ground).using(ea.RodPlaneContact, k=0.02 * m / dt**2, nu=0.05 * m / dt)
