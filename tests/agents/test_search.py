@@ -147,7 +147,7 @@ def test_shipped_gaits_do_what_their_files_say(path):
 def test_the_shipped_snake_beats_the_shipped_gait():
     found = yaml.safe_load((SEARCHED / "snake_forward_wave.yml").read_text())["score"]["distance_mean"]
     learned = load_pretrained("snake_forward_ppo")[1]["score"]["distance_mean"]
-    assert learned > 1.2 * found > 0.5
+    assert learned > 1.2 * found > 0.48
 
 
 def test_what_cannot_be_searched(tmp_path):

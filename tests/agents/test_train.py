@@ -14,6 +14,7 @@ from agents import hyperparameters, training, transfer
 from agents.cards import command_of, load_pretrained
 from agents.policies import load_run
 from agents.run_files import METRICS, read_table
+from agents.seeds import training_seeds
 from agents.train import TrainArguments, _started
 from agents.vec_env import make_batch_vec_env, observation_names
 from tests.agents.commands import FORWARD, REACH, SMALL, SMALL_EPISODES, SMALL_PPO, run
@@ -67,7 +68,9 @@ def test_the_loop_does_what_stable_baselines3_does(ppo_run):
         make_batch_vec_env(FORWARD, n_envs=2, **values["env_kwargs"]), **hyperparameters.normalize_arguments(values)
     )
     torch.set_num_threads(1)
-    model = PPO(env=env, seed=0, device="cpu", **hyperparameters.algorithm_arguments(values)).learn(200)
+    model = PPO(env=env, seed=0, device="cpu", **hyperparameters.algorithm_arguments(values))
+    env.venv.seed(training_seeds(0, 0, 2))
+    model.learn(200)
     trained, _ = load_run(ppo_run)
     for name, value in model.policy.state_dict().items():
         assert torch.equal(value, trained.model.policy.state_dict()[name]), name
