@@ -106,7 +106,8 @@ class SystemRecorder:
 def _energy(system: Any, kind: str) -> float:
     """Return an energy of a system [J], of which rigid bodies have but two."""
     compute = getattr(system, f"compute_{kind}_energy", None)
-    return 0.0 if compute is None else float(compute())
+    # that of a body is an array of one, as in PyElastica
+    return 0.0 if compute is None else float(np.sum(compute()))
 
 
 def _log_rod(
