@@ -20,6 +20,8 @@ CONSERVATIVE = {"ground": ("ground reaction", "ground spring"), "contact": ("con
 """Kinds of load that must give no energy, where what a spring holds at the end is next to nothing"""
 PASSIVE = ("ground friction", "contact friction", "ground damping", "contact damping", "damping")
 """Kinds of load that must take energy"""
+SOURCES = ("strains", *CONSERVATIVE, *PASSIVE)
+"""What energy may come from without being put in, in the order of `Audit.gains`"""
 
 
 @dataclasses.dataclass
@@ -91,7 +93,8 @@ def main() -> None:
     import tyro
     from rich.console import Console
     from rich.table import Table
-    from tqdm import tqdm
+
+    from agents.progress import track
 
     arguments = tyro.cli(Arguments)
     for env_id in arguments.env:
@@ -102,13 +105,13 @@ def main() -> None:
     table = Table(title="Energy over the work of the muscles; what is positive comes from nothing")
     pairs = [(env_id, policy) for env_id in arguments.env for policy in arguments.policies]
     rows = []
-    for env_id, policy in tqdm(pairs, desc="audits"):
+    for env_id, policy in track(pairs, "audits"):
         for name, result in audit(
             env_id, policy, episodes=arguments.episodes, steps=arguments.steps, seed=arguments.seed
         ):
             rows.append((env_id.partition("/")[2], name, f"{result.muscles:.3g} J",
                          *(f"{100.0 * gain:.2f} %" for gain in result.gains.values())))  # fmt: skip
-    for column in ("environment", "policy", "muscles", *result.gains):
+    for column in ("environment", "policy", "muscles", *SOURCES):
         table.add_column(column)
     for row in rows:
         table.add_row(*row)

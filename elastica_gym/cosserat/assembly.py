@@ -118,13 +118,13 @@ def lay_out(fields: Mapping[str, Array], rod: Continuum, start: int) -> None:
         ("viscosity", elements, [np.broadcast_to(nu, n) for nu in (rod.viscosity, rod.torque_viscosity)]),
         ("rest_voronoi_length", voronoi, rod.rest_voronoi_length),
         ("inv_rest_voronoi_length", voronoi, 1.0 / rod.rest_voronoi_length), ("bend", voronoi, rod.bend_stiffness),
-        ("inv_bend", voronoi, _inverse(rod.bend_stiffness)),
+        ("inv_bend", voronoi, inverse(rod.bend_stiffness)),
     ):  # fmt: skip
         fields[name][..., where] = value
 
 
-def _inverse(a: Array) -> Array:
-    """Return 1/a, and 0 where a is 0: a joint that bends freely holds no energy."""
+def inverse(a: Array) -> Array:
+    """Return 1/a, and 0 where a is 0: at ghosts, and at joints that bend freely."""
     return np.divide(1.0, a, out=np.zeros_like(a), where=a > 0.0)
 
 

@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from .assembly import inverse
 from .kernels.step import advance
 from .model import Array, Control, Cylinders, Index, Model, Planes, State, make_state
 from .threads import Team
@@ -53,9 +54,9 @@ def energy(model: Model, state: State, control: Control) -> Energy:
     control : Control
     """
     current = _at(model, state, control)
-    inv_e = _inverse(current.length * model.inv_rest_length)
+    inv_e = inverse(current.length * model.inv_rest_length)
     neighbours = current.length + np.roll(current.length, -1, axis=1)
-    inv_E = 2.0 * model.rest_voronoi_length * _inverse(neighbours)
+    inv_E = 2.0 * model.rest_voronoi_length * inverse(neighbours)
     stretched, lengthened = (inv_e, inv_E**3) if model.is_reciprocal else (np.ones_like(inv_e), np.ones_like(inv_E))
     dx = np.diff(state.x, axis=2, append=0.0)
     sigma = np.einsum("bijk,bjk->bik", state.Q, dx) * model.inv_rest_length - control.rest_sigma
@@ -126,7 +127,7 @@ class Ledger:
             power = without
         self.work["internal"] += dt * power
         # uniform damping is no load: it takes its part of the velocities after the kick
-        lost, e_inv = 0.5 * (1.0 - kept**-2), _inverse(state.length * model.inv_rest_length)
+        lost, e_inv = 0.5 * (1.0 - kept**-2), inverse(state.length * model.inv_rest_length)
         self.work["damping"] += np.einsum("k,bik->b", model.mass, lost * state.v**2)
         self.work["damping"] += np.einsum("ik,bik,bk->b", model.inertia, lost * state.w**2, e_inv)
 
@@ -182,8 +183,3 @@ def _at(model: Model, state: State, control: Control) -> State:
     copy = deepcopy(state)
     advance(model, copy, control, 0, state.time.size, 0.0, 1)
     return copy
-
-
-def _inverse(e: Array) -> Array:
-    """Return 1/e, and 0 where e is 0, at ghosts."""
-    return np.divide(1.0, e, out=np.zeros_like(e), where=e > 0.0)
