@@ -2,17 +2,20 @@
 
 Muscles may put energy in; friction and damping take it out. Whatever else gives energy is a fault that learning may
 live on: loads of strains that derive from no potential (imbalance), ground or contact that return more than they got.
+So is an element that has turned inside out.
 """
 
 import dataclasses
 from collections.abc import Iterator
 
 import gymnasium
+import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from agents.checks import check_bounds, choose, require_extra, run_command
 from agents.seeds import TEST
 from elastica_gym.cosserat.energy import Ledger
+from elastica_gym.cosserat.model import Model, State
 from elastica_gym.envs import IDS
 
 POLICIES = ("random", "full", "scripted", "shipped")
@@ -50,6 +53,8 @@ class Audit:
     """Work of each kind of load over that of the muscles"""
     imbalance: float
     """Energy that the loads of strains made from nothing, over the work of the muscles"""
+    shortest: float
+    """Least length of an element along its director d3, over its length at rest; below 0 it is inside out"""
 
     @property
     def gains(self) -> dict[str, float]:
@@ -79,12 +84,21 @@ def _audit(env_id: str, policy: object, episodes: int, steps: int, seed: int) ->
     observations, _ = env.reset(seed=seed)
     # episodes that end go on: the physics does
     ledger = batch.integrator = Ledger(batch.body.model, batch.state, batch.control)
+    shortest = np.inf
     for _ in range(steps):
         observations = env.step(policy(observations, batch))[0]
+        shortest = min(shortest, _shortest(batch.body.model, batch.state))
     env.close()
     muscles = ledger.work["muscles"].mean()
     work = {kind: float(work.mean() / muscles) for kind, work in ledger.work.items()}
-    return Audit(float(muscles), work, float(ledger.imbalance.mean() / muscles))
+    return Audit(float(muscles), work, float(ledger.imbalance.mean() / muscles), shortest)
+
+
+def _shortest(model: Model, state: State) -> float:
+    """Return the least stretch of an element along its director d3."""
+    along = (state.Q[:, 2, :, :-1] * np.diff(state.x, axis=2)).sum(axis=1)
+    is_element = model.rest_length[:-1] > 0.0
+    return float((along * model.inv_rest_length[:-1])[:, is_element].min())
 
 
 def main() -> None:
@@ -102,7 +116,8 @@ def main() -> None:
     for policy in arguments.policies:
         choose("policy", policy, POLICIES)
     check_bounds(dataclasses.asdict(arguments), {"episodes": 1, "steps": 1, "seed": 0})
-    table = Table(title="Energy over the work of the muscles; what is positive comes from nothing")
+    table = Table(title="Energy over the work of the muscles: what is positive comes from nothing. "
+                        "Shortest element, over its length at rest")
     pairs = [(env_id, policy) for env_id in arguments.env for policy in arguments.policies]
     rows = []
     for env_id, policy in track(pairs, "audits"):
@@ -110,8 +125,8 @@ def main() -> None:
             env_id, policy, episodes=arguments.episodes, steps=arguments.steps, seed=arguments.seed
         ):
             rows.append((env_id.partition("/")[2], name, f"{result.muscles:.3g} J",
-                         *(f"{100.0 * gain:.2f} %" for gain in result.gains.values())))  # fmt: skip
-    for column in ("environment", "policy", "muscles", *SOURCES):
+                         *(f"{100.0 * gain:.2f} %" for gain in result.gains.values()), f"{result.shortest:.2f}"))  # fmt: skip
+    for column in ("environment", "policy", "muscles", *SOURCES, "shortest"):
         table.add_column(column)
     for row in rows:
         table.add_row(*row)

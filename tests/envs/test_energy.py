@@ -1,4 +1,4 @@
-"""No environment gives energy from nothing that a policy could live on."""
+"""No environment gives energy from nothing that a policy could live on, and no element turns inside out."""
 
 import pytest
 
@@ -7,6 +7,8 @@ from scripts.audit_energy import POLICIES, audit
 
 LARGEST = 0.01
 """Energy from nothing that is allowed, over the work of the muscles"""
+SHORTEST = 0.3
+"""Least length of an element over its length at rest: 0 is flat, and below it is inside out"""
 QUICK = [("elastica_gym/SnakeForward-v1", "full"), ("elastica_gym/SnakeForward-v1", "shipped"),
          ("elastica_gym/OctopusGrab-v1", "scripted"), ("elastica_gym/OctopusCrawl-v1", "full")]  # fmt: skip
 
@@ -17,6 +19,7 @@ def check(env_id: str, policy: str, steps: int) -> None:
         assert result.muscles > 0.0
         # what passes through a kind of load is no gain
         assert max(result.gains.values()) < LARGEST, (name, result.gains)
+        assert result.shortest > SHORTEST, (name, result.shortest)
 
 
 @pytest.mark.parametrize(("env_id", "policy"), QUICK)
