@@ -223,11 +223,12 @@ def _rows(summary: dict[str, Any]) -> Iterator[tuple[str, float, float]]:
 
 
 def success_interval(successes: np.ndarray, *, widened: float = 1.0) -> tuple[float, float]:
-    """95 % interval of a success rate (Wilson 1927), which stays sensible at none and all; or one that is wider."""
-    n, rate, z = len(successes), float(np.mean(successes)), 1.96 * widened
-    centre = (rate + z * z / (2 * n)) / (1 + z * z / n)
-    half = z / (1 + z * z / n) * math.sqrt(rate * (1 - rate) / n + z * z / (4 * n * n))
-    return centre - half, centre + half
+    """Return the 95 % confidence interval of a success rate (Wilson 1927), or one that is wider by a factor."""
+    from scipy import stats
+
+    level = 1.0 - 2.0 * stats.norm.sf(widened * stats.norm.isf(0.025))
+    interval = stats.binomtest(int(np.sum(successes)), len(successes)).proportion_ci(level, method="wilson")
+    return float(interval.low), float(interval.high)
 
 
 @dataclasses.dataclass

@@ -124,8 +124,8 @@ def main() -> None:
         for name, result in audit(
             env_id, policy, episodes=arguments.episodes, steps=arguments.steps, seed=arguments.seed
         ):
-            rows.append((env_id.partition("/")[2], name, f"{result.muscles:.3g} J",
-                         *(f"{100.0 * gain:.2f} %" for gain in result.gains.values()), f"{result.shortest:.2f}"))  # fmt: skip
+            gains = (f"{100.0 * gain:.2f} %" for gain in result.gains.values())
+            rows.append((env_id.partition("/")[2], name, f"{result.muscles:.3g} J", *gains, f"{result.shortest:.2f}"))
     for column in ("environment", "policy", "muscles", *SOURCES, "shortest"):
         table.add_column(column)
     for row in rows:
