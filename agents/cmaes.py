@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from agents import curves
 from agents.checkpoints import write_atomically
 from agents.checks import BadInputError
-from agents.evaluate import Evaluation, run_episodes
+from agents.evaluation import Evaluation, run_episodes
 from agents.gaits import GAITS, Gait, GaitPolicy, check_fits, describe, gait_for
 from agents.progress import ProgressDisplay
 from agents.run_files import GAIT, SEARCH, Table, read_table

@@ -1,13 +1,15 @@
-"""Films of an episode: an H.264 video or an animated GIF, whichever the name of the file asks for."""
+"""Films and recordings of an episode: an H.264 video, an animated GIF, or a file for rerun."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agents.checks import BadInputError, choose, make_folder, require_extra
-from agents.policies import Policy
+from agents.checks import BadInputError, choose, make_folder, missing_extra, require_extra
 from agents.progress import Bar
+
+if TYPE_CHECKING:
+    from agents.policies import Policy
 
 SUFFIXES = (".mp4", ".gif")
 COLORS = 64
@@ -40,7 +42,7 @@ def check_film(path: Path, size: tuple[int, int]) -> None:
 
 
 def film(
-    policy: Policy, env_id: str, path: Path, *, seed: int, every: int = 1, size: tuple[int, int] = SIZE,
+    policy: "Policy", env_id: str, path: Path, *, seed: int, every: int = 1, size: tuple[int, int] = SIZE,
     env_kwargs: dict[str, Any] | None = None,
 ) -> Path:  # fmt: skip
     """Run an episode, draw it, write it to a file, and say where that is.
@@ -79,7 +81,7 @@ def film(
     return path
 
 
-def run_shown(policy: Policy, env_id: str, *, seed: int, env_kwargs: dict[str, Any]) -> Any:
+def run_shown(policy: "Policy", env_id: str, *, seed: int, env_kwargs: dict[str, Any]) -> Any:
     """Run one episode of a policy that has begun it, show how far it is, and return the rollout."""
     from elastica_gym.viz import run_rollout
 
@@ -103,3 +105,17 @@ def _write_gif(frames: np.ndarray, path: Path, seconds: float) -> None:
     pictures[0].save(
         path, save_all=True, append_images=pictures[1:], duration=1000.0 * seconds, loop=0, optimize=True
     )
+
+
+def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs: dict[str, Any]) -> Path | None:
+    """Record the episode with `seed` for rerun; without rerun, say how to get it and return None."""
+    if message := missing_extra("viz"):
+        print(f"no recording: {message}")
+        return None
+    from elastica_gym.viz import write_recording
+
+    path = folder / f"{env_id.rpartition('/')[2]}-seed{seed}.rrd"
+    policy.reset([seed])
+    write_recording(run_shown(policy, env_id, seed=seed, env_kwargs=env_kwargs), path)
+    print(f"recorded {path}")
+    return path

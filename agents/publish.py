@@ -11,7 +11,7 @@ from agents.checks import BadInputError, make_folder, require_extra, run_command
 from agents.seeds import TEST
 
 if TYPE_CHECKING:
-    from agents.evaluate import Evaluation
+    from agents.evaluation import Evaluation
     from agents.policies import TrainedPolicy
 
 MACHINE = ("cpu", "kernels", "commit")
@@ -80,7 +80,7 @@ def _score_again(arguments: PublishArguments) -> list[Path]:
 def _evaluate(
     arguments: PublishArguments, policy: "TrainedPolicy", env_id: str, env_kwargs: dict[str, Any] | None
 ) -> "Evaluation":
-    from agents.evaluate import evaluate, print_table
+    from agents.evaluation import evaluate, print_table
     from agents.progress import Bar
 
     with Bar(f"evaluating {arguments.episodes} episodes") as bar:

@@ -25,7 +25,8 @@ from agents import cards, curves, transfer
 from agents.checkpoints import checkpoint_folders, last_whole_checkpoint, write_atomically, write_checkpoint
 from agents.checks import BadInputError
 from agents.episodes import Episodes
-from agents.evaluate import evaluate, record
+from agents.evaluation import evaluate
+from agents.films import record
 from agents.hyperparameters import algorithm_arguments, algorithm_class, normalize_arguments
 from agents.imitation import CRITIC_UPDATES, critic_alone, imitate
 from agents.policies import TrainedPolicy, load_model, load_normalization, load_run, use_one_thread

@@ -111,7 +111,7 @@ def pretrained() -> dict[str, str]:
 def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
     """Train what has to be, evaluate it, and write the cell's file."""
     from agents import cards
-    from agents.evaluate import evaluate
+    from agents.evaluation import evaluate
     from agents.gaits import load_gait
     from agents.policies import Policy, baseline, load_run
     from agents.progress import Bar

@@ -54,7 +54,7 @@ def main() -> None:
 
 def compare(console: Console, folder: Path, arguments: Arguments) -> None:
     """Print a table of the policy that evaluated best in training and the baselines, on the same unseen seeds."""
-    from agents.evaluate import confidence, evaluate
+    from agents.evaluation import confidence, evaluate
     from agents.policies import baseline, load_run
     from agents.run_files import BEST
 

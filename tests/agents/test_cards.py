@@ -11,7 +11,7 @@ import yaml
 
 from agents import cards, hyperparameters
 from agents.checks import BadInputError
-from agents.evaluate import evaluate
+from agents.evaluation import evaluate
 from agents.policies import load_run
 from tests.agents.commands import FORWARD, REACH, ROOT, SMALL_PPO, run
 from tests.agents.test_bad_input import refused

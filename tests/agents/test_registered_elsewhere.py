@@ -5,7 +5,7 @@ import json
 import pytest
 
 from agents.checks import choose_environment
-from agents.evaluate import evaluate
+from agents.evaluation import evaluate
 from agents.policies import BASELINES, baseline
 from tests.agents.commands import FORWARD, SMALL_PPO, run
 from tests.agents.test_bad_input import refused

@@ -10,7 +10,7 @@ import yaml
 from agents import cmaes, gaits, policies
 from agents.cards import load_pretrained
 from agents.checks import BadInputError
-from agents.evaluate import Evaluation, evaluate, run_episodes
+from agents.evaluation import Evaluation, evaluate, run_episodes
 from agents.run_files import GAIT, SEARCH, read_table
 from agents.vec_env import make_batch_vec_env
 from elastica_gym.bodies import octopus, snake
