@@ -10,7 +10,7 @@ import yaml
 
 from agents.checks import BadInputError, choose
 from elastica_gym.bodies.body import Body
-from elastica_gym.cosserat import Wave
+from elastica_gym.engine import Wave
 from elastica_gym.envs.gaits import (
     OCTOPUS_FUNCTIONS,
     SEED_COEFFICIENTS,

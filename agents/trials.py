@@ -13,9 +13,9 @@ import elastica_gym  # noqa: F401  registers the environments
 from agents.scoring import Samples, goals_held
 from elastica_gym.bodies import grip
 from elastica_gym.bodies.body import activate
-from elastica_gym.cosserat import State
-from elastica_gym.cosserat.model import make_control, make_state
-from elastica_gym.cosserat.threads import Team
+from elastica_gym.engine import State
+from elastica_gym.engine.model import make_control, make_state
+from elastica_gym.engine.threads import Team
 
 SAMPLE_TIME = 0.01
 """Most time from one sample to the next [s]"""

@@ -14,8 +14,8 @@ from gymnasium.vector import AutoresetMode
 
 from agents.checks import check_bounds, choose, require_extra, run_command
 from agents.seeds import TEST
-from elastica_gym.cosserat.energy import Ledger
-from elastica_gym.cosserat.model import Model, State
+from elastica_gym.engine.energy import Ledger
+from elastica_gym.engine.model import Model, State
 from elastica_gym.envs import IDS
 
 POLICIES = ("random", "full", "scripted", "shipped")

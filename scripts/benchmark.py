@@ -249,7 +249,7 @@ def measure_own_force(n_pairs: int) -> dict[str, float]:
 
 def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_pairs: int) -> dict[str, Any]:
     """Time both programs in turn, from where ours is after the warm-up."""
-    from elastica_gym.cosserat import advance
+    from elastica_gym.engine import advance
     from tests.cosserat import oracle
 
     dt = float(twin.dt)
@@ -272,7 +272,7 @@ def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_p
 
 def require_agreement(name: str, rod: Any, dt: float, allowed: float, **loads: Any) -> dict[str, float]:
     """Exit unless both programs compute the same on the scene that is timed."""
-    from elastica_gym.cosserat import advance
+    from elastica_gym.engine import advance
     from tests.cosserat import oracle
 
     model, state, control, twin = oracle.both([rod], dt, **loads)

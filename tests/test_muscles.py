@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from elastica_gym.bodies import octopus, snake
-from elastica_gym.cosserat import advance, at_rest
+from elastica_gym.engine import advance, at_rest
 from elastica_gym.muscles import (
     DIRECTIONS,
     N_ACTIVATIONS,

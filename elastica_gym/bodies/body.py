@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..cosserat import Model, Rod, State, advance, at_rest
-from ..cosserat.kernels.compiler import entry, inline, stage
-from ..cosserat.kernels.contact import overlap
-from ..cosserat.kernels.vectors import column, plus, times, to_lab, vector
-from ..cosserat.model import Array, Index
-from ..cosserat.surroundings import Cylinder
+from ..engine import Model, Rod, State, advance, at_rest
+from ..engine.jit.compiler import entry, inline, stage
+from ..engine.kernels.contact.law import overlap
+from ..engine.kernels.math.vectors import column, plus, times, to_lab, vector
+from ..engine.model import Array, Index
+from ..engine.surroundings import Cylinder
 from ..muscles import N_ACTIVATIONS, Muscles, activation_names, couple_matrix
 from .mirror import Mirror
 

@@ -1,7 +1,7 @@
 """How an animal with two arms touches its object: gaps, and how far round it each arm is wrapped.
 
 Both are told from where they are, not from forces. Surfaces are those that contact knows
-(`elastica_gym.cosserat.kernels.cylinders`): an element is its axis swept by a ball of its radius, and so is the object.
+(`elastica_gym.engine.kernels.contact.cylinders`): an element is its axis swept by a ball of its radius, and so is the object.
 """
 
 import functools
@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cosserat import State
-from ..cosserat.kernels.compiler import entry
-from ..cosserat.kernels.contact import middle, overlap
-from ..cosserat.kernels.vectors import column, cross, dot, plus, times, vector
-from ..cosserat.model import Array, Index
+from ..engine import State
+from ..engine.jit.compiler import entry
+from ..engine.kernels.contact.law import middle, overlap
+from ..engine.kernels.math.vectors import column, cross, dot, plus, times, vector
+from ..engine.model import Array, Index
 from .body import Body
 
 TOUCH = 0.002

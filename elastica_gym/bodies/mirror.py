@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cosserat.model import Array, Index
+from ..engine.model import Array, Index
 
 COUNTED = ("position", "velocity", "curvature", "roll", "contact", "touch")
 """Readings that are counted along the body"""

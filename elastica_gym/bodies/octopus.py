@@ -14,9 +14,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..cosserat import Rod, build_model
-from ..cosserat.model import Array
-from ..cosserat.surroundings import Contact, Cylinder, Plane
+from ..engine import Rod, build_model
+from ..engine.model import Array
+from ..engine.surroundings import Contact, Cylinder, Plane
 from ..muscles import OCTOPUS
 from .body import Body, Senses, couples_of
 from .mirror import Mirror

@@ -13,8 +13,8 @@ import functools
 
 import numpy as np
 
-from ..cosserat import Rod, build_model, stable_time_step
-from ..cosserat.surroundings import Contact, Plane
+from ..engine import Rod, build_model, stable_time_step
+from ..engine.surroundings import Contact, Plane
 from ..muscles import SNAKE
 from .body import Body, Senses, couples_of
 from .mirror import Mirror

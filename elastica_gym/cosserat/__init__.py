@@ -1,10 +1,10 @@
-"""Cosserat rods: the physics, which knows nothing of reinforcement learning.
+"""Cosserat rods in the names of PyElastica: scripts run with their import changed, on the engine's compiled step.
 
-Two ways lead to the same compiled step. The environments describe rods and surroundings, build a
-`Model`, and `advance` a batch of states. Scripts write a simulator in the names of PyElastica:
-a class of `BaseSystemCollection` and its features, rods, loads, constraints, ``finalize`` and `integrate`.
+A simulator is a class of `BaseSystemCollection` and its features; it takes rods, loads and constraints, and after
+``finalize`` it is integrated.
 """
 
+from ..engine.rod import stable_time_step
 from . import contact_utils as contact_utils
 from . import typing as typing
 from . import version as version
@@ -17,7 +17,6 @@ from ._calculus import (
     quadrature_kernel_for_block_structure,
 )
 from ._linalg import levi_civita_tensor
-from .assembly import at_rest, build_model
 from .boundary_conditions import (
     ConstraintBase,
     FixedConstraint,
@@ -67,18 +66,14 @@ from .joint import (
     SelfContact,
     SphericalJoint,
 )
-from .kernels.step import advance
-from .model import Control, Model, State, make_control, make_state
 from .modules import BaseSystemCollection, CallBacks, Connections, Constraints, Contact, Damping, Forcing
 from .not_offered import refuse_names
 from .restart import load_state, save_state
 from .rigidbody import Cylinder, RigidBodyBase, Sphere
-from .rod import Rod, stable_time_step
 from .rod.cosserat_rod import CosseratRod
 from .rod.knot_theory import KnotTheory, compute_link, compute_twist, compute_writhe
 from .rod.rod_base import RodBase
 from .surface import Plane
-from .surroundings import Wave
 from .systems.protocol import StaticSystemProtocol, SystemProtocol
 from .timestepper import extend_stepper_interface, integrate
 from .timestepper.symplectic_steppers import PEFRL, PositionVerlet
@@ -98,7 +93,6 @@ __all__ = [
     "ConstraintBase",
     "Constraints",
     "Contact",
-    "Control",
     "CosseratRod",
     "Cylinder",
     "CylinderPlaneContact",
@@ -122,7 +116,6 @@ __all__ = [
     "InteractionPlane",
     "KnotTheory",
     "LaplaceDissipationFilter",
-    "Model",
     "MuscleTorques",
     "MyCallBack",
     "NoContact",
@@ -135,7 +128,6 @@ __all__ = [
     "ReciprocalTension",
     "RerunCallBack",
     "RigidBodyBase",
-    "Rod",
     "RodBase",
     "RodCylinderContact",
     "RodPlaneContact",
@@ -147,15 +139,10 @@ __all__ = [
     "SlenderBodyTheory",
     "Sphere",
     "SphericalJoint",
-    "State",
     "StaticSystemProtocol",
     "SystemProtocol",
     "UniformForces",
     "UniformTorques",
-    "Wave",
-    "advance",
-    "at_rest",
-    "build_model",
     "compute_link",
     "compute_twist",
     "compute_writhe",
@@ -167,8 +154,6 @@ __all__ = [
     "isqrt",
     "levi_civita_tensor",
     "load_state",
-    "make_control",
-    "make_state",
     "position_average",
     "position_difference_kernel",
     "quadrature_kernel",

@@ -8,7 +8,7 @@ from itertools import permutations
 import numpy as np
 from numba import njit
 
-from .model import Array
+from ..engine.model import Array
 
 
 def levi_civita_tensor(dim: int) -> Array:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..engine.model import Array
 from .lowering import SceneBuilder
-from .model import Array
 from .not_offered import refuse_methods
 
 Indices = int | Sequence[int]

@@ -5,11 +5,11 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
-from .kernels.simulate import load
+from ..engine.kernels.simulate import load
+from ..engine.scene import Hooks
 from .lowering import SceneBuilder
 from .rigidbody.rigid_body import RigidBodyBase
 from .rod.rod_base import RodBase
-from .scene import Hooks
 
 SILENT = Hooks(0, 0, 0, 0)
 UNLISTED = -1

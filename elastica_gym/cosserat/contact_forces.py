@@ -5,12 +5,12 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from . import surroundings
+from ..engine import surroundings
+from ..engine.rod import as_number, three
 from .by_hand import act
 from .interaction import _triple, friction_of
 from .lowering import SceneBuilder
 from .rigidbody import Cylinder, Sphere
-from .rod.description import as_number, three
 from .rod.rod_base import RodBase
 from .surface.plane import Plane
 

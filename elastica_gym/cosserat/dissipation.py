@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from ..engine.model import Array
+from ..engine.rod import require_not_negative
 from .lowering import SceneBuilder
-from .model import Array
 from .not_offered import refuse_names
-from .rod.description import require_not_negative
 from .rod.rod_base import RodBase
 
 

@@ -8,13 +8,13 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ..engine.scene import Scheme
+from ..engine.stability import Limit
+from ..engine.threads import available_cpus, side_by_side
 from .modules.declaration import Declaration
 from .rigidbody.rigid_body import RigidBodyBase
 from .rod.cosserat_rod import CosseratRod
-from .scene import Scheme
 from .simulation import Callbacks, Simulation, is_lowered
-from .stability import Limit
-from .threads import available_cpus, side_by_side
 
 WORTHWHILE = 100_000
 """Elements times steps that take some milliseconds: for less, threads cost more time than they save"""

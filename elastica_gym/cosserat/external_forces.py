@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..engine.model import Array
+from ..engine.rod import as_number, as_numbers, require_not_negative, require_positive, three
+from ..engine.surroundings import beta_spline, net_couple, wave_profiles
 from .lowering import SceneBuilder
-from .model import Array
-from .rod.description import as_number, as_numbers, require_not_negative, require_positive, three
-from .surroundings import beta_spline, net_couple, wave_profiles
 
 
 class NoForces:

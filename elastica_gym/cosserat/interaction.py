@@ -5,7 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import surroundings
+from ..engine import surroundings
+from ..engine.model import Array
+from ..engine.rod import as_number, require_not_negative, three
 from .by_hand import act
 from .contact_utils import (
     _elements_to_nodes_inplace,
@@ -16,9 +18,7 @@ from .contact_utils import (
 )
 from .external_forces import NoForces
 from .lowering import SceneBuilder
-from .model import Array
 from .not_offered import refuse_methods, refuse_names
-from .rod.description import as_number, require_not_negative, three
 
 
 @refuse_methods

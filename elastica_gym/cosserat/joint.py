@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..engine.model import Array
+from ..engine.rod import as_number, three
 from .contact_forces import NoContact, RodCylinderContact, RodRodContact, RodSelfContact, RodSphereContact
 from .contact_utils import (  # noqa: F401
     _aabbs_not_intersecting,
@@ -18,10 +20,8 @@ from .contact_utils import (  # noqa: F401
     _prune_using_aabbs_rod_rod,
 )
 from .lowering import SceneBuilder
-from .model import Array
 from .not_offered import refuse_names
 from .rigidbody import Sphere
-from .rod.description import as_number, three
 from .rod.rod_base import RodBase
 
 End = tuple[Any, int, Any, int]

@@ -11,11 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .assembly import plane_table
-from .kernels.simulate import DENSE, SPARSE, UNLOADED
-from .model import BLOCK, ROOM, Array, Index, Model, Waves, aligned_zeros
-from .rod.rod_base import RodBase
-from .scene import (
+from ..engine.builder import plane_table
+from ..engine.kernels.simulate import DENSE, SPARSE, UNLOADED
+from ..engine.model import BLOCK, ROOM, Array, Index, Model, Waves, aligned_zeros
+from ..engine.scene import (
     BodyContacts,
     Clamps,
     DeadLoads,
@@ -32,7 +31,8 @@ from .scene import (
     Sides,
     Tensions,
 )
-from .surroundings import Plane, net_couple
+from ..engine.surroundings import Plane, net_couple
+from .rod.rod_base import RodBase
 
 ALWAYS = -np.inf
 CACHED = 1024

@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from .assembly import at_rest, build_model, lay_out
+from ..engine.builder import at_rest, build_model, lay_out
+from ..engine.kernels.simulate import DENSE, simulate
+from ..engine.model import Array
+from ..engine.rod import Continuum, Rod, as_indices, stable_time_step
+from ..engine.scene import Hooks, Scheme
+from ..engine.stability import Limit, limits
 from .dissipation import AnalyticalLinearDamper
-from .kernels.simulate import DENSE, simulate
 from .lowering import SceneBuilder, is_built_in
-from .model import Array
 from .modules.declaration import Declaration
 from .rigidbody.rigid_body import RigidBodyBase
 from .rod.cosserat_rod import MATERIAL, CosseratRod, Lowered
-from .rod.description import Continuum, Rod, as_indices, stable_time_step
-from .scene import Hooks, Scheme
-from .stability import Limit, limits
 from .surface.plane import Plane
 
 NEVER = 2**62

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..engine.model import Array
 from ._rotations import _inv_skew_symmetrize, _rotate, _skew_symmetrize
-from .model import Array
 
 
 def format_vector_shape(vector_collection: ArrayLike) -> Array:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
-from .model import Array
+from ..engine.model import Array
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bodies.body import Body
-from ..cosserat import Rod, Wave
-from ..cosserat.model import Array
+from ..engine import Rod, Wave
+from ..engine.model import Array
 from ..muscles import N_ACTIVATIONS, N_ARMS, N_FUNCTIONS, activations_for, couple_matrix
 
 if TYPE_CHECKING:

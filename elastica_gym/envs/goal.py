@@ -71,7 +71,7 @@ from gymnasium.vector import VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
-from ..cosserat.model import Array
+from ..engine.model import Array
 from . import octopus_reach, snake_reach
 from .batch import BatchEnv
 from .single import SingleEnv

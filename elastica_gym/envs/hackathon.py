@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 
 from ..bodies import octopus
 from ..bodies.octopus import MIDDLE, N_ELEMENTS
-from ..cosserat import advance, at_rest
-from ..cosserat.model import Array
-from ..cosserat.rod import require_positive
+from ..engine import advance, at_rest
+from ..engine.model import Array
+from ..engine.rod import require_positive
 from ..muscles import DIRECTIONS, N_ARMS, N_FUNCTIONS, activation_names
 
 TIME_STEP = 4e-5

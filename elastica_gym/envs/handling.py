@@ -10,7 +10,7 @@ import numpy as np
 
 from ..bodies import octopus
 from ..bodies.grip import arm_elements, grip
-from ..cosserat.model import Array, Index, State
+from ..engine.model import Array, Index, State
 from .task import GOAL_BOUNDS, GOAL_NAMES, Mask, Situation, Task, has_toppled, in_heading_frame, no_target, way_to_goal
 
 WRAPPED = np.radians(200.0)

@@ -89,7 +89,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bodies import octopus
-from ..cosserat.model import Array
+from ..engine.model import Array
 from .gaits import octopus_crawl
 from .starts import with_object_anywhere
 from .task import (

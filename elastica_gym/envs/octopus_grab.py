@@ -99,7 +99,7 @@ v0: the first; withdrawn.
 
 import numpy as np
 
-from ..cosserat.model import Array
+from ..engine.model import Array
 from .handling import (
     approach,
     fallen,

@@ -94,7 +94,7 @@ import numpy as np
 
 from ..bodies import octopus
 from ..bodies.grip import TOUCH
-from ..cosserat.model import Array
+from ..engine.model import Array
 from .gaits import octopus_reach
 from .handling import see_object
 from .starts import OBJECT_STARTS

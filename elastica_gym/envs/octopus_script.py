@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..bodies.octopus import BASE_RADIUS, OBJECT_LENGTH, OBJECT_RADIUS
-from ..cosserat.model import Array, Index
+from ..engine.model import Array, Index
 from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
 from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
 from .handling import now

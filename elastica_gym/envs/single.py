@@ -6,7 +6,7 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
-from ..cosserat.model import Array
+from ..engine.model import Array
 from .batch import RENDER_MODES, BatchEnv, Observations
 from .task import Task
 

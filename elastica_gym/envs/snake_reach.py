@@ -81,7 +81,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bodies import snake
-from ..cosserat.model import Array
+from ..engine.model import Array
 from .gaits import snake_crawl
 from .starts import draw_start
 from .task import Mask, Situation, Task, effort, in_heading_frame, way_to_goal

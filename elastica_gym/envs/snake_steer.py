@@ -86,7 +86,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..bodies import snake
-from ..cosserat.model import Array, State
+from ..engine.model import Array, State
 from .gaits import snake_crawl
 from .starts import draw_start
 from .task import Mask, Situation, Task, effort, in_heading_frame, no_target

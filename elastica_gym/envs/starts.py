@@ -10,8 +10,8 @@ from collections.abc import Callable
 import numpy as np
 
 from ..bodies.body import Body, activate
-from ..cosserat import State, advance, at_rest
-from ..cosserat.model import Array
+from ..engine import State, advance, at_rest
+from ..engine.model import Array
 from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
 
 BENDS = (0.7, 0.35, 0.175)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..bodies.body import Body, Pose
-from ..cosserat.model import Array, State
+from ..engine.model import Array, State
 
 Mask = NDArray[np.bool_]
 

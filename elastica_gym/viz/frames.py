@@ -18,7 +18,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cosserat.model import Array
+from ..engine.model import Array
 from .rollout import HOME_RADIUS, Rollout, element_at, first_nodes
 
 Image = NDArray[np.uint8]

@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..cosserat.model import Array
+from ..engine.model import Array
 from .rollout import HOME_RADIUS, Policy, Rollout, run_rollout
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
-from ..cosserat.model import Array, Index
+from ..engine.model import Array, Index
 from ..muscles import activation_names
 
 if TYPE_CHECKING:

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..cosserat.model import Array
 from ..cosserat.rigidbody import RigidBodyBase, Sphere
 from ..cosserat.rod.rod_base import RodBase
+from ..engine.model import Array
 from .recording import (
     APPLICATION_ID,
     BACKGROUND,

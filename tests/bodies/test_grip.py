@@ -8,8 +8,8 @@ import pytest
 from elastica_gym.bodies import grip, octopus, snake
 from elastica_gym.bodies.body import feel, make_pose
 from elastica_gym.bodies.grip import DEEPEST, TOUCH, arm_elements
-from elastica_gym.cosserat import at_rest
-from elastica_gym.cosserat.model import make_state
+from elastica_gym.engine import at_rest
+from elastica_gym.engine.model import make_state
 
 RADIUS, LENGTH = 0.05, 0.6
 STEP = 1.0 / 120.0

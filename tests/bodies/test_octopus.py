@@ -7,8 +7,8 @@ import pytest
 from elastica_gym.bodies import octopus
 from elastica_gym.bodies.body import feel, make_pose
 from elastica_gym.bodies.octopus import HEAD, HEAD_RADIUS, MIDDLE
-from elastica_gym.cosserat import advance, at_rest, build_model
-from elastica_gym.cosserat.kernels.contact import overlap
+from elastica_gym.engine import advance, at_rest, build_model
+from elastica_gym.engine.kernels.contact.law import overlap
 
 SUBSTEPS = 313
 CONTROL_DT = 0.05

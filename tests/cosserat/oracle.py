@@ -11,10 +11,10 @@ import elastica as ea
 import numpy as np
 from elastica._contact_functions import _calculate_contact_forces_cylinder_plane
 
-from elastica_gym.cosserat import Control, Model, Rod, State, Wave, advance, at_rest, build_model
-from elastica_gym.cosserat.kernels.contact import CENTRING
-from elastica_gym.cosserat.model import Array
-from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
+from elastica_gym.engine import Control, Model, Rod, State, Wave, advance, at_rest, build_model
+from elastica_gym.engine.kernels.contact.law import CENTRING
+from elastica_gym.engine.model import Array
+from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
 from .scenes import disturb, disturb_body, motion
 

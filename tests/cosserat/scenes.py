@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elastica_gym.cosserat import Rod, State, Wave
-from elastica_gym.cosserat.model import Array, Model
-from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
+from elastica_gym.engine import Rod, State, Wave
+from elastica_gym.engine.model import Array, Model
+from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 from elastica_gym.muscles import DIRECTIONS, Muscles
 
 LENGTH = 0.35

@@ -6,8 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from elastica_gym.cosserat import advance, at_rest, build_model, make_state
-from elastica_gym.cosserat.threads import Team
+from elastica_gym.engine import advance, at_rest, build_model, make_state
+from elastica_gym.engine.threads import Team
 
 from .scenes import GRAVITY, TIME_STEP, disturb, ground, motion, snake
 

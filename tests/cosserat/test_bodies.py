@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from elastica_gym.cosserat import Rod, advance, at_rest, build_model
-from elastica_gym.cosserat.model import Array, Model, State
-from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
+from elastica_gym.engine import Rod, advance, at_rest, build_model
+from elastica_gym.engine.model import Array, Model, State
+from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
 G = 9.80665
 DT = 1e-4

@@ -6,9 +6,9 @@ There alone both put half of a force on each node of an element; elsewhere PyEla
 import numpy as np
 import pytest
 
-from elastica_gym.cosserat import Rod, advance, at_rest, build_model
-from elastica_gym.cosserat.model import Array, State
-from elastica_gym.cosserat.surroundings import Contact, Cylinder
+from elastica_gym.engine import Rod, advance, at_rest, build_model
+from elastica_gym.engine.model import Array, State
+from elastica_gym.engine.surroundings import Contact, Cylinder
 
 from .scenes import loop, without_contact
 

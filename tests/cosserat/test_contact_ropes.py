@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import elastica_gym.cosserat as ea
-from elastica_gym.cosserat import Rod, advance, at_rest, build_model, stable_time_step
-from elastica_gym.cosserat.model import Array
-from elastica_gym.cosserat.surroundings import Contact, Cylinder
+from elastica_gym.engine import Rod, advance, at_rest, build_model, stable_time_step
+from elastica_gym.engine.model import Array
+from elastica_gym.engine.surroundings import Contact, Cylinder
 
 from .scenes import motion
 

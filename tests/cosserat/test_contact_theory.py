@@ -5,10 +5,10 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from elastica_gym.cosserat import Rod, advance, at_rest, build_model
-from elastica_gym.cosserat.kernels.rods import list_pairs
-from elastica_gym.cosserat.model import Array, Model, State, aligned_zeros
-from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
+from elastica_gym.engine import Rod, advance, at_rest, build_model
+from elastica_gym.engine.kernels.contact.rods import list_pairs
+from elastica_gym.engine.model import Array, Model, State, aligned_zeros
+from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
 from .scenes import disturb, disturb_body, loop, motion, rotations, without_contact
 

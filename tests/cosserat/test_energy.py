@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from elastica_gym.cosserat import Rod, advance, at_rest, build_model, stable_time_step
-from elastica_gym.cosserat.energy import Ledger, energy
-from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
+from elastica_gym.engine import Rod, advance, at_rest, build_model, stable_time_step
+from elastica_gym.engine.energy import Ledger, energy
+from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
 N = 20
 GRAVITY = (0.0, -9.81, 0.0)

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from elastica_gym.cosserat import Rod, Wave, build_model, stable_time_step
-from elastica_gym.cosserat.rod import require_stable
-from elastica_gym.cosserat.surroundings import Plane
+from elastica_gym.engine import Rod, Wave, build_model, stable_time_step
+from elastica_gym.engine.rod import require_stable
+from elastica_gym.engine.surroundings import Plane
 
 from .scenes import WAVE, snake
 

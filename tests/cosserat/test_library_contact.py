@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import elastica_gym.cosserat as ea
-from elastica_gym.cosserat.surroundings import Contact
+from elastica_gym.engine.surroundings import Contact
 
 DT = 2.0**-16
 X, Y, Z = np.eye(3)

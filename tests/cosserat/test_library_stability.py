@@ -8,9 +8,9 @@ import pytest
 import elastica_gym.cosserat as ea
 from elastica_gym.bodies.octopus import octopus
 from elastica_gym.bodies.snake import snake
-from elastica_gym.cosserat import Rod, build_model
-from elastica_gym.cosserat.stability import require_stable_model
-from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
+from elastica_gym.engine import Rod, build_model
+from elastica_gym.engine.stability import require_stable_model
+from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
 X, Y, Z = np.eye(3)
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from elastica_gym.cosserat import Rod, Wave, advance
-from elastica_gym.cosserat.surroundings import Contact, Cylinder, Plane
+from elastica_gym.engine import Rod, Wave, advance
+from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
 from .scenes import FRICTION, GRAVITY, TIME_STEP, WAVE, ground, kinked, loop, motion, snake
 

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import elastica_gym.cosserat as ea
-from elastica_gym.cosserat import Rod, advance, at_rest, build_model, stable_time_step
-from elastica_gym.cosserat.model import Array
+from elastica_gym.engine import Rod, advance, at_rest, build_model, stable_time_step
+from elastica_gym.engine.model import Array
 
 from .scenes import energy, momenta, motion, rotations
 

@@ -7,13 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elastica_gym.cosserat import Rod, advance, at_rest, build_model, stable_time_step
-from elastica_gym.cosserat.kernels.rotations import (
-    half_angle_over_sine,
-    sine_over_angle,
-    versine_over_angle_squared,
-)
-from elastica_gym.cosserat.surroundings import Plane
+from elastica_gym.engine import Rod, advance, at_rest, build_model, stable_time_step
+from elastica_gym.engine.kernels.math.rotations import half_angle_over_sine, sine_over_angle, versine_over_angle_squared
+from elastica_gym.engine.surroundings import Plane
 
 from .scenes import (
     GRAVITY,

@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...engine.rod import as_indices
 from ..joint import ConnectionBase
 from ..not_offered import refuse_names
-from ..rod.description import as_indices
 from .declaration import Declaration
 
 if TYPE_CHECKING:

@@ -5,10 +5,10 @@ import warnings
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..model import Array
+from ...engine.model import Array
+from ...engine.rod import require_positive
 from ..not_offered import refuse_names
 from ..rod.cosserat_rod import TOLERANCE, _unit, _vector
-from ..rod.description import require_positive
 from .rigid_body import RigidBodyBase
 
 

@@ -5,9 +5,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..model import Array
+from ...engine.model import Array
+from ...engine.surroundings import Contact
 from ..rod.cosserat_rod import Field
-from ..surroundings import Contact
 
 NOWHERE = Contact(stiffness=1.0)
 

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...engine.rod import require_positive
 from ..rod.cosserat_rod import _vector
-from ..rod.description import require_positive
 from .rigid_body import RigidBodyBase
 
 

@@ -1,6 +1,6 @@
 """Rods: as the environments describe them, and as the documented library does."""
 
-from .description import (
+from ...engine.rod import (
     Continuum,
     Rod,
     require_finite,

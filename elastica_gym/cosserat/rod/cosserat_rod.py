@@ -8,12 +8,12 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...engine.model import Array
+from ...engine.rod import SHEAR_CORRECTION, as_count, as_number, as_numbers, require_not_negative, require_positive
 from .._calculus import position_average, position_difference_kernel  # noqa: F401
 from ..keywords import warn_of_unknown
-from ..model import Array
 from ..not_offered import refuse_names
 from . import strain
-from .description import SHEAR_CORRECTION, as_count, as_number, as_numbers, require_not_negative, require_positive
 from .in_place import (  # noqa: F401
     _compute_all_dilatations,
     _compute_bending_twist_strains,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..model import Array
+from ...engine.model import Array
 from .strain import apply
 
 

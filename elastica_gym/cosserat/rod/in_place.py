@@ -7,8 +7,8 @@ compiled in one piece, and the rod's attributes are computed by `strain`.
 import numpy as np
 from numpy.typing import NDArray
 
+from ...engine.model import Array
 from .._calculus import difference_kernel_for_block_structure, quadrature_kernel_for_block_structure
-from ..model import Array
 from . import strain
 
 

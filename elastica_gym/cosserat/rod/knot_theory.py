@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..model import Array
+from ...engine.model import Array
 from ..not_offered import refuse_names
 
 SEGMENTS = ("next_tangent", "end_to_end", "net_tangent")

@@ -6,7 +6,7 @@ k + 1; a closed rod (a ring) also has the pair of its last element and its first
 
 import numpy as np
 
-from ..model import Array
+from ...engine.model import Array
 
 
 def between(values: Array, is_ring: bool) -> tuple[Array, Array]:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..rod.description import three
+from ...engine.rod import three
 from .surface_base import SurfaceBase
 
 UNIT = 1e-12

@@ -2,7 +2,7 @@
 
 from typing import ClassVar, Protocol, runtime_checkable
 
-from ..model import Array
+from ...engine.model import Array
 
 
 @runtime_checkable

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...engine.scene import Scheme
 from ..not_offered import refuse_methods, refuse_names
-from ..scene import Scheme
 
 if TYPE_CHECKING:
     from ..modules.base_system import BaseSystemCollection

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ....engine.model import Array
+from ....engine.rod import as_number
 from ...joint import ConnectionBase, FixedJoint
-from ...model import Array
-from ...rod.description import as_number
 
 
 def compute_position_of_point(system: Any, point: ArrayLike, index: int) -> Array:

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ....engine.model import Array
 from ...by_hand import act_joint
 from ...joint import ConnectionBase, End
 from ...lowering import SceneBuilder
-from ...model import Array
 from ...not_offered import refuse_methods
 
 

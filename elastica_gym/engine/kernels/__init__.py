@@ -1,0 +1,1 @@
+"""The compiled physics by subject, and step.py, which puts it together."""

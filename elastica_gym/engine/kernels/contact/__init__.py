@@ -1,0 +1,1 @@
+"""Contact of rods, cylinders and planes."""
