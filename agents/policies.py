@@ -11,8 +11,8 @@ import yaml
 
 from agents.checks import BadInputError, choose
 from agents.hyperparameters import algorithm_class, normalize_arguments
+from elastica_gym.bodies.muscles import DIRECTIONS, N_ARMS, N_FUNCTIONS
 from elastica_gym.envs.gaits import seed_gait
-from elastica_gym.muscles import DIRECTIONS, N_ARMS, N_FUNCTIONS
 
 BASELINES = ("zero", "random", "scripted", "seed_gait")
 

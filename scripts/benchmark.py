@@ -132,8 +132,8 @@ def found(name: str) -> str:
 def measure_snake(n: int, n_pairs: int) -> dict[str, Any]:
     """Time a step of the snake of n elements, damping and static friction on, in both programs on one thread."""
     sys.path.insert(0, str(ROOT))
-    from tests.cosserat import oracle
-    from tests.cosserat.scenes import GRAVITY, LENGTH, TIME_STEP, WAVE, ground, snake
+    from tests.engine import oracle
+    from tests.engine.scenes import GRAVITY, LENGTH, TIME_STEP, WAVE, ground, snake
 
     dt, loads = TIME_STEP * 50 / n, {"gravity": GRAVITY, "planes": [ground()], "waves": [WAVE]}
     rod = snake(n, damping_rate=DAMPING)
@@ -154,9 +154,9 @@ def measure_arms(n_pairs: int) -> dict[str, Any]:
     sys.path.insert(0, str(ROOT))
     import numpy as np
 
-    from elastica_gym.muscles import N_ACTIVATIONS, couple_matrix
-    from tests.cosserat import oracle
-    from tests.cosserat.scenes import ARMS_CONTACT, ARMS_MUSCLES, ARMS_STEP, GRAVITY, arms, ground, held
+    from elastica_gym.bodies.muscles import N_ACTIVATIONS, couple_matrix
+    from tests.engine import oracle
+    from tests.engine.scenes import ARMS_CONTACT, ARMS_MUSCLES, ARMS_STEP, GRAVITY, arms, ground, held
 
     rod = arms()
     activations = np.random.default_rng(0).uniform(-1.0, 1.0, N_ACTIVATIONS)
@@ -210,7 +210,7 @@ def require_same_rods(n_rods: int, n_steps: int = 100) -> dict[str, float]:
     import numpy as np
 
     import elastica_gym.cosserat as library
-    from tests.cosserat import oracle
+    from tests.engine import oracle
 
     ends = []
     for lib, contact in ((library, None), (elastica, oracle.PairContact)):
@@ -250,7 +250,7 @@ def measure_own_force(n_pairs: int) -> dict[str, float]:
 def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_pairs: int) -> dict[str, Any]:
     """Time both programs in turn, from where ours is after the warm-up."""
     from elastica_gym.engine import advance
-    from tests.cosserat import oracle
+    from tests.engine import oracle
 
     dt = float(twin.dt)
     advance(model, state, control, 0, 1, dt, round(WARM_UP / dt))
@@ -273,7 +273,7 @@ def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_p
 def require_agreement(name: str, rod: Any, dt: float, allowed: float, **loads: Any) -> dict[str, float]:
     """Exit unless both programs compute the same on the scene that is timed."""
     from elastica_gym.engine import advance
-    from tests.cosserat import oracle
+    from tests.engine import oracle
 
     model, state, control, twin = oracle.both([rod], dt, **loads)
     advance(model, state, control, 0, 1, dt, 100)

@@ -12,7 +12,7 @@ import numpy as np
 
 import elastica_gym  # noqa: F401  registers the environments
 from agents.checks import make_folder, require_extra, run_command
-from elastica_gym.muscles import DIRECTIONS, LEVELS, N_ACTIVATIONS, N_ARMS, N_FUNCTIONS
+from elastica_gym.bodies.muscles import DIRECTIONS, LEVELS, N_ACTIVATIONS, N_ARMS, N_FUNCTIONS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

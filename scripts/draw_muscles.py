@@ -12,7 +12,7 @@ import numpy as np
 from agents.checks import make_folder, require_extra, run_command
 from elastica_gym.bodies import snake
 from elastica_gym.bodies.body import Body
-from elastica_gym.muscles import DIRECTIONS, LEVELS, basis
+from elastica_gym.bodies.muscles import DIRECTIONS, LEVELS, basis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

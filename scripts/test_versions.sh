@@ -14,8 +14,8 @@ shift
 [ $# -gt 0 ] || set -- 3.11 3.12 3.13
 
 # a representative part: what is compiled, its errors and bodies, and the environments of the snake
-tests=(tests/test_import.py tests/test_versions.py tests/cosserat/test_compiler.py tests/cosserat/test_errors.py
-       tests/cosserat/test_bodies.py tests/envs/test_episodes.py)
+tests=(tests/test_import.py tests/test_versions.py tests/engine/test_compiler.py tests/engine/test_errors.py
+       tests/engine/test_bodies.py tests/envs/test_episodes.py)
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

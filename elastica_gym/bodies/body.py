@@ -12,8 +12,8 @@ from ..engine.kernels.contact.law import overlap
 from ..engine.kernels.math.vectors import column, plus, times, to_lab, vector
 from ..engine.model import Array, Index
 from ..engine.surroundings import Cylinder
-from ..muscles import N_ACTIVATIONS, Muscles, activation_names, couple_matrix
 from .mirror import Mirror
+from .muscles import N_ACTIVATIONS, Muscles, activation_names, couple_matrix
 
 
 class Senses(NamedTuple):

@@ -1,7 +1,8 @@
 """How an animal with two arms touches its object: gaps, and how far round it each arm is wrapped.
 
-Both are told from where they are, not from forces. Surfaces are those that contact knows
-(`elastica_gym.engine.kernels.contact.cylinders`): an element is its axis swept by a ball of its radius, and so is the object.
+Both are told from where they are, not from forces. Surfaces are those of contact
+(`elastica_gym.engine.kernels.contact.cylinders`): an element is its axis swept by a ball of its radius, and so is the
+object.
 """
 
 import functools

@@ -39,7 +39,7 @@ class Mirror:
         Parameters
         ----------
         names : tuple of str
-            Observations (``observation_names`` of an environment) or actions (`elastica_gym.muscles.activation_names`).
+            Observations (``observation_names`` of an environment) or actions (`.muscles.activation_names`).
 
         Returns
         -------

@@ -17,9 +17,9 @@ import numpy as np
 from ..engine import Rod, build_model
 from ..engine.model import Array
 from ..engine.surroundings import Contact, Cylinder, Plane
-from ..muscles import OCTOPUS
 from .body import Body, Senses, couples_of
 from .mirror import Mirror
+from .muscles import OCTOPUS
 
 N_ELEMENTS = 120
 HEAD = (50, 70)

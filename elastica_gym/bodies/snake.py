@@ -15,9 +15,9 @@ import numpy as np
 
 from ..engine import Rod, build_model, stable_time_step
 from ..engine.surroundings import Contact, Plane
-from ..muscles import SNAKE
 from .body import Body, Senses, couples_of
 from .mirror import Mirror
+from .muscles import SNAKE
 
 LENGTH = 0.35
 RADIUS = 0.011 * LENGTH

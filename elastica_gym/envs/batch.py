@@ -13,13 +13,13 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ..bodies.body import activate, feel, make_pose
+from ..bodies.muscles import N_ACTIVATIONS, activation_names
 from ..engine import advance, at_rest
 from ..engine.jit.compiler import Bound
 from ..engine.model import Array
 from ..engine.rod import require_positive, require_stable
 from ..engine.stability import require_stable_model
 from ..engine.threads import Team, available_cpus
-from ..muscles import N_ACTIVATIONS, activation_names
 from .spaces import NamedBox
 from .task import Mask, Situation, Task, TerminationReason
 

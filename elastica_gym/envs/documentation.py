@@ -2,7 +2,7 @@
 
 import itertools
 
-from ..muscles import activation_names
+from ..bodies.muscles import activation_names
 from .task import Task
 
 READINGS = {
@@ -33,7 +33,7 @@ def document(task: Task) -> str:
     return "\n".join([
         *_section("Action"),
         f"``Box(-1, 1, ({len(activation_names(body.arms))},), float32)``: the activations that the muscles are "
-        "commanded to; see `elastica_gym.muscles`.", "",
+        "commanded to; see `elastica_gym.bodies.muscles`.", "",
         *_section("Observation"),
         "``Box(float32)``, clipped to its range.", "", "| index | meaning | unit | range |", "|---|---|---|---|",
         *_rows(task.observations(body)), "",

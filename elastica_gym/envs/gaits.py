@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bodies.body import Body
+from ..bodies.muscles import N_ACTIVATIONS, N_ARMS, N_FUNCTIONS, activations_for, couple_matrix
 from ..engine import Rod, Wave
 from ..engine.model import Array
-from ..muscles import N_ACTIVATIONS, N_ARMS, N_FUNCTIONS, activations_for, couple_matrix
 
 if TYPE_CHECKING:
     from .batch import BatchEnv

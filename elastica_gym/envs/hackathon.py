@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..bodies import octopus
+from ..bodies.muscles import DIRECTIONS, N_ARMS, N_FUNCTIONS, activation_names
 from ..bodies.octopus import MIDDLE, N_ELEMENTS
 from ..engine import advance, at_rest
 from ..engine.model import Array
 from ..engine.rod import require_positive
-from ..muscles import DIRECTIONS, N_ARMS, N_FUNCTIONS, activation_names
 
 TIME_STEP = 4e-5
 """[s]"""

@@ -9,7 +9,7 @@ at the start: the animal has to crawl to the object, move it, wrap an arm around
 Action
 ------
 ``Box(-1, 1, (42,), float32)``: the activations that the muscles are commanded to, held for a control
-step and clipped to the range. Muscles follow with a time constant of 0.06 s. See `elastica_gym.muscles`.
+step and clipped to the range. Muscles follow with a time constant of 0.06 s. See `elastica_gym.bodies.muscles`.
 
 | index | direction | arm | function |
 |---|---|---|---|

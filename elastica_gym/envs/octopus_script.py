@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bodies.muscles import N_ACTIVATIONS, N_FUNCTIONS
 from ..bodies.octopus import BASE_RADIUS, OBJECT_LENGTH, OBJECT_RADIUS
 from ..engine.model import Array, Index
-from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
 from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
 from .handling import now
 from .task import Mask

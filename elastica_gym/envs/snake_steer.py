@@ -8,7 +8,7 @@ It is told a direction and a speed, and once or twice on the way others.
 Action
 ------
 ``Box(-1, 1, (42,), float32)``: the activations that the muscles are commanded to, held for a control
-step and clipped to the range. Muscles follow with a time constant of 0.06 s. See `elastica_gym.muscles`.
+step and clipped to the range. Muscles follow with a time constant of 0.06 s. See `elastica_gym.bodies.muscles`.
 
 | index | direction | half of the body | function |
 |---|---|---|---|

@@ -10,9 +10,9 @@ from collections.abc import Callable
 import numpy as np
 
 from ..bodies.body import Body, activate
+from ..bodies.muscles import N_ACTIVATIONS, N_FUNCTIONS
 from ..engine import State, advance, at_rest
 from ..engine.model import Array
-from ..muscles import N_ACTIVATIONS, N_FUNCTIONS
 
 BENDS = (0.7, 0.35, 0.175)
 """Standard deviation of the curvature of each sine wave along the body, where it is thinnest, in 1/body length"""

@@ -9,8 +9,8 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
+from ..bodies.muscles import activation_names
 from ..engine.model import Array, Index
-from ..muscles import activation_names
 
 if TYPE_CHECKING:
     from ..envs import BatchEnv

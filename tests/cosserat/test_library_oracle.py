@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 import elastica_gym.cosserat as ours
-
-from .scenes import loop, rotations
+from tests.engine.scenes import loop, rotations
 
 theirs = pytest.importorskip("elastica", reason="pip install 'elastica-gym[bench]'")
-oracle = pytest.importorskip("tests.cosserat.oracle", reason="pip install 'elastica-gym[bench]'")
+oracle = pytest.importorskip("tests.engine.oracle", reason="pip install 'elastica-gym[bench]'")
 
 DT = 1e-5
 N = 12

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from elastica_gym.bodies import octopus, snake
-from elastica_gym.engine import advance, at_rest
-from elastica_gym.muscles import (
+from elastica_gym.bodies.muscles import (
     DIRECTIONS,
     N_ACTIVATIONS,
     OCTOPUS,
@@ -15,6 +14,7 @@ from elastica_gym.muscles import (
     basis,
     couple_matrix,
 )
+from elastica_gym.engine import advance, at_rest
 
 ROD = snake().rods[0]
 MATRIX = couple_matrix(SNAKE, ROD)

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .engine import Rod
-from .engine.model import Array
+from ..engine import Rod
+from ..engine.model import Array
 
 DIRECTIONS = ("normal", "binormal", "tangent")
 LEVELS = (1, 2, 4)

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from elastica_gym.bodies.muscles import DIRECTIONS, Muscles
 from elastica_gym.engine import Rod, State, Wave
 from elastica_gym.engine.model import Array, Model
 from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
-from elastica_gym.muscles import DIRECTIONS, Muscles
 
 LENGTH = 0.35
 RADIUS = 0.011 * LENGTH

@@ -12,9 +12,9 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 # an entry in one file that calls a stage's helper in another: small, so that it compiles at once
-HELPER = "from .compiler import inline\n\n\n@inline\ndef value(x):\n    return x + {}\n"
-PROBE = "from .compiler import entry\nfrom .helper import value\n\n\n@entry\ndef probe(x):\n    return value(x)\n"
-RUN = "from elastica_gym.cosserat.kernels.probe import probe; print(probe(1.0))"
+HELPER = "from ..jit.compiler import inline\n\n\n@inline\ndef value(x):\n    return x + {}\n"
+PROBE = "from ..jit.compiler import entry\nfrom .helper import value\n\n\n@entry\ndef probe(x):\n    return value(x)\n"
+RUN = "from elastica_gym.engine.kernels.probe import probe; print(probe(1.0))"
 
 
 @pytest.fixture
@@ -22,10 +22,10 @@ def copied(tmp_path):
     """Copy the physics beside a small kernel, and return the folder that holds the package."""
     package = tmp_path / "elastica_gym"
     without = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(ROOT / "elastica_gym" / "cosserat", package / "cosserat", ignore=without)
+    shutil.copytree(ROOT / "elastica_gym" / "engine", package / "engine", ignore=without)
     (package / "__init__.py").write_text("")
-    (package / "cosserat" / "kernels" / "helper.py").write_text(HELPER.format("1.0"))
-    (package / "cosserat" / "kernels" / "probe.py").write_text(PROBE)
+    (package / "engine" / "kernels" / "helper.py").write_text(HELPER.format("1.0"))
+    (package / "engine" / "kernels" / "probe.py").write_text(PROBE)
     return tmp_path
 
 
@@ -53,7 +53,7 @@ def test_kept_and_announced(copied):
 def test_changed_callee_in_another_file(copied):
     status, output, errors = run(copied)
     assert "compiling probe" in errors
-    (copied / "elastica_gym" / "cosserat" / "kernels" / "helper.py").write_text(HELPER.format("2.0"))
+    (copied / "elastica_gym" / "engine" / "kernels" / "helper.py").write_text(HELPER.format("2.0"))
     status, output, errors = run(copied)
     assert (status, output) == (0, "3.0")
     assert "compiling probe" in errors
@@ -62,7 +62,7 @@ def test_changed_callee_in_another_file(copied):
 def test_entry_outside_the_physics(copied):
     """An entry of another package is compiled anew when its own file changes."""
     outside = copied / "elastica_gym" / "outside.py"
-    text = "from elastica_gym.cosserat.kernels.compiler import entry\n\n\n@entry\ndef probe(x):\n    return x * {}\n"
+    text = "from elastica_gym.engine.jit.compiler import entry\n\n\n@entry\ndef probe(x):\n    return x * {}\n"
     code = "from elastica_gym.outside import probe; print(probe(1.0))"
     for factor in ("5.0", "7.0"):
         outside.write_text(text.format(factor))
@@ -109,7 +109,8 @@ def test_disk_that_is_full(copied):
 ASSEMBLY = """
 import inspect, re, sys
 from numba import types
-from elastica_gym.cosserat.kernels import curvature, dynamics, kinematics, plane, strains
+from elastica_gym.engine.kernels.contact import plane
+from elastica_gym.engine.kernels.rod import curvature, dynamics, kinematics, strains
 
 row, scalar = types.Array(types.float64, 1, "C"), types.float64
 rows = types.UniTuple(row, 3)

@@ -8,7 +8,7 @@ from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
 from .scenes import FRICTION, GRAVITY, TIME_STEP, WAVE, ground, kinked, loop, motion, snake
 
-oracle = pytest.importorskip("tests.cosserat.oracle", reason="pip install 'elastica-gym[bench]'")
+oracle = pytest.importorskip("tests.engine.oracle", reason="pip install 'elastica-gym[bench]'")
 
 KINETIC = Plane(kinetic_friction=(FRICTION, 1.5 * FRICTION, 2.0 * FRICTION))
 RESPONSE = Plane(stiffness=10.0, damping=0.01)
