@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from agents.checks import (
+from elastica_gym.console.bad_input import (
     BadInputError,
     choose,
     choose_environment,
@@ -15,12 +15,12 @@ from agents.checks import (
     require_extra,
     run_command,
 )
-from agents.evaluation import Evaluation, evaluate, print_table
-from agents.films import record
-from agents.seeds import TEST
+from elastica_gym.rl.evaluation import Evaluation, evaluate, print_table
+from elastica_gym.rl.films import record
+from elastica_gym.rl.seeds import TEST
 
 if TYPE_CHECKING:
-    from agents.policies import Policy
+    from elastica_gym.rl.policies import Policy
 
 
 @dataclasses.dataclass
@@ -42,7 +42,7 @@ class EvaluateArguments:
     episodes: int = 50
     """How many episodes."""
     seed: int = TEST.start
-    """Seed of the first episode; by default one that nothing is trained or chosen with (`agents.seeds`)."""
+    """Seed of the first episode; by default one that nothing is trained or chosen with (`elastica_gym.rl.seeds`)."""
     record: Path | None = None
     """Folder for a rerun recording of the first episode."""
     video: Path | None = None
@@ -59,10 +59,10 @@ def main() -> None:
     import tyro
 
     arguments = tyro.cli(EvaluateArguments)
-    from agents.progress import Bar
+    from elastica_gym.console.progress import Bar
 
     if arguments.video is not None:
-        from agents.films import SIZE, check_film
+        from elastica_gym.rl.films import SIZE, check_film
 
         check_film(arguments.video, SIZE)
     for folder in (arguments.record, arguments.json and arguments.json.parent):
@@ -88,14 +88,14 @@ def main() -> None:
     if arguments.record is not None:
         record(policy, env_id, seed=arguments.seed, folder=arguments.record, env_kwargs=env_kwargs)
     if arguments.video is not None:
-        from agents.films import film
+        from elastica_gym.rl.films import film
 
         film(policy, env_id, arguments.video, seed=arguments.seed, env_kwargs=env_kwargs)
 
 
 def write_json(path: Path, arguments: EvaluateArguments, result: Evaluation, **what: Any) -> None:
     """Write means, what each episode came to, the arguments, and the machine and versions; say where that is."""
-    from agents import machine
+    from elastica_gym.rl import machine
 
     given = {key: str(value) if isinstance(value, Path) else value for key, value in vars(arguments).items()}
     everything = {
@@ -118,13 +118,13 @@ def _policy_and_environment(arguments: EvaluateArguments) -> "tuple[Policy, str,
     if sum(given is not None for given in (arguments.run, arguments.pretrained, arguments.policy)) != 1:
         raise BadInputError("Give either --run DIR, --pretrained NAME or --policy zero|random|scripted|seed_gait|FILE.")
     if arguments.env is not None:
-        from agents.policies import BASELINES
+        from elastica_gym.rl.policies import BASELINES
 
         # a policy that does not look at observations takes them in any form
         choose_environment(arguments.env, goals=arguments.policy in BASELINES)
     # torch takes seconds to import: not before the arguments are known to be good
-    from agents.cards import load_pretrained
-    from agents.policies import load_run
+    from elastica_gym.rl.cards import load_pretrained
+    from elastica_gym.rl.policies import load_run
 
     if arguments.policy is not None:
         return *_baseline_and_environment(arguments.policy, arguments.env), {}
@@ -140,9 +140,9 @@ def _policy_and_environment(arguments: EvaluateArguments) -> "tuple[Policy, str,
 
 
 def _baseline_and_environment(name: str, env_id: str | None) -> "tuple[Policy, str]":
-    from agents.gaits import load_gait
-    from agents.policies import baseline
     from elastica_gym.envs import task_of
+    from elastica_gym.rl.policies import baseline
+    from elastica_gym.scripted.families import load_gait
 
     if Path(name).suffix == ".yml":
         gait, searched_on = load_gait(Path(name))
@@ -158,7 +158,7 @@ def _baseline_and_environment(name: str, env_id: str | None) -> "tuple[Policy, s
 
 def _file_policy(path: Path) -> "Policy":
     """Return the policy of a Python file, as the score takes it, in this process."""
-    from agents.policy_file import FilePolicy
+    from elastica_gym.rl.policy_file import FilePolicy
 
     if not path.is_file():
         raise BadInputError(f"There is no policy file {path}.")

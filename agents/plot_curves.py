@@ -3,7 +3,7 @@
 import dataclasses
 from pathlib import Path
 
-from agents.checks import BadInputError, choose_environment, make_folder, require_extra, run_command
+from elastica_gym.console.bad_input import BadInputError, choose_environment, make_folder, require_extra, run_command
 
 
 @dataclasses.dataclass
@@ -25,10 +25,10 @@ def main() -> None:
 
     arguments = tyro.cli(PlotArguments)
     choose_environment(arguments.env)
-    from agents import curves
-    from agents.checkpoints import write_atomically
-    from agents.policies import read_config
-    from agents.run_files import EVALUATIONS, METRICS
+    from elastica_gym.rl import curves
+    from elastica_gym.rl.checkpoints import write_atomically
+    from elastica_gym.rl.policies import read_config
+    from elastica_gym.rl.run_files import EVALUATIONS, METRICS
 
     for run in arguments.runs:
         if (trained_on := read_config(run)["env"]) != arguments.env:

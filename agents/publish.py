@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import elastica_gym
-from agents import machine
-from agents.checks import BadInputError, make_folder, require_extra, run_command
-from agents.seeds import TEST
+from elastica_gym.console.bad_input import BadInputError, make_folder, require_extra, run_command
+from elastica_gym.rl import machine
+from elastica_gym.rl.seeds import TEST
 
 if TYPE_CHECKING:
-    from agents.evaluation import Evaluation
-    from agents.policies import TrainedPolicy
+    from elastica_gym.rl.evaluation import Evaluation
+    from elastica_gym.rl.policies import TrainedPolicy
 
 MACHINE = ("cpu", "kernels", "commit")
 """What a card says of the machine"""
@@ -59,8 +59,8 @@ def main() -> None:
 
 def _publish(arguments: PublishArguments, run: Path) -> list[Path]:
     """Score the policy of a run and write it with its card; return the files."""
-    from agents.cards import write_pretrained
-    from agents.policies import load_run
+    from elastica_gym.rl.cards import write_pretrained
+    from elastica_gym.rl.policies import load_run
 
     policy, config = load_run(run)
     result = _evaluate(arguments, policy, config["env"], config["hyperparameters"].get("env_kwargs"))
@@ -70,7 +70,7 @@ def _publish(arguments: PublishArguments, run: Path) -> list[Path]:
 
 def _score_again(arguments: PublishArguments) -> list[Path]:
     """Score a policy that is kept already, and write the score into its card; return its file."""
-    from agents.cards import load_pretrained, write_card
+    from elastica_gym.rl.cards import load_pretrained, write_card
 
     policy, card = load_pretrained(arguments.name, arguments.out)
     result = _evaluate(arguments, policy, card["environment"], card["env_kwargs"])
@@ -80,8 +80,8 @@ def _score_again(arguments: PublishArguments) -> list[Path]:
 def _evaluate(
     arguments: PublishArguments, policy: "TrainedPolicy", env_id: str, env_kwargs: dict[str, Any] | None
 ) -> "Evaluation":
-    from agents.evaluation import evaluate, print_table
-    from agents.progress import Bar
+    from elastica_gym.console.progress import Bar
+    from elastica_gym.rl.evaluation import evaluate, print_table
 
     with Bar(f"evaluating {arguments.episodes} episodes") as bar:
         result = evaluate(
@@ -94,8 +94,8 @@ def _evaluate(
 
 def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "Evaluation") -> dict[str, Any]:
     """Return what the card says."""
-    from agents.cards import command_of
-    from agents.run_files import BEST, EVALUATIONS, METRICS, read_table
+    from elastica_gym.rl.cards import command_of
+    from elastica_gym.rl.run_files import BEST, EVALUATIONS, METRICS, read_table
 
     folder = run.parent if run.name == BEST else run
     seconds = [read_table(folder / name).get("seconds", [0.0])[-1] for name in (METRICS, EVALUATIONS)]

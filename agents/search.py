@@ -5,8 +5,7 @@ import time
 from pathlib import Path
 from typing import Any, Literal
 
-from agents import machine
-from agents.checks import (
+from elastica_gym.console.bad_input import (
     BadInputError,
     check_bounds,
     choose_environment,
@@ -15,8 +14,9 @@ from agents.checks import (
     require_extra,
     run_command,
 )
-from agents.run_files import GAIT, SEARCH
-from agents.seeds import RUNS, VALIDATION, check_seeds
+from elastica_gym.rl import machine
+from elastica_gym.rl.run_files import GAIT, SEARCH
+from elastica_gym.rl.seeds import RUNS, VALIDATION, check_seeds
 
 
 @dataclasses.dataclass
@@ -34,7 +34,7 @@ class SearchArguments:
     """The family of gaits: the snake's published wave; one that also has a period and bends towards the goal; or the
     octopus's stroke. By default the wave on SnakeForward, and on the others what can reach a goal."""
     seed: int = 0
-    """Seed of the search, below 2**32; the seeds of its starts are derived from it (`agents.seeds`)."""
+    """Seed of the search, below 2**32; the seeds of its starts are derived from it (`elastica_gym.rl.seeds`)."""
     evaluations: int | None = None
     """Candidates to evaluate, over all restarts; by default 6,000, or no limit if minutes are given."""
     minutes: float | None = None
@@ -67,13 +67,13 @@ def main() -> None:
 
     arguments = tyro.cli(SearchArguments)
     folder, config = _started(arguments)
-    from agents.progress import Bar
+    from elastica_gym.console.progress import Bar
 
     with Bar("starting"):
         # Stable-Baselines3 takes seconds to import: not before the arguments are known to be good
         import yaml
 
-        from agents.cmaes import Search
+        from elastica_gym.rl.cmaes import Search
 
         search = Search(folder, config)
     (folder / "search.yml").write_text(yaml.safe_dump(config, sort_keys=False))

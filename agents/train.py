@@ -5,7 +5,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from agents.checks import (
+from elastica_gym.console.bad_input import (
     BadInputError,
     check_bounds,
     choose_environment,
@@ -14,8 +14,8 @@ from agents.checks import (
     require_extra,
     run_command,
 )
-from agents.run_files import BEST
-from agents.seeds import RUNS, VALIDATION, check_seeds
+from elastica_gym.rl.run_files import BEST
+from elastica_gym.rl.seeds import RUNS, VALIDATION, check_seeds
 
 
 @dataclasses.dataclass
@@ -30,7 +30,7 @@ class TrainArguments:
     algo: str = "ppo"
     """Algorithm: ppo or sac."""
     seed: int = 0
-    """Seed of networks and exploration, below 2**32; the environments' seeds are derived from it (`agents.seeds`)."""
+    """Seed of networks and exploration, below 2**32; the environments' seeds are derived from it (`rl.seeds`)."""
     steps: int | None = None
     """Environment steps to train for; by default n_timesteps of the configuration, or no limit if minutes are given."""
     minutes: float | None = None
@@ -54,7 +54,7 @@ class TrainArguments:
     evaluation_episodes: int = 20
     """Episodes of each evaluation."""
     evaluation_seed: int = VALIDATION.start
-    """Seed of an evaluation's first episode, not one of those to train or to test with (`agents.seeds`)."""
+    """Seed of an evaluation's first episode, not one of those to train or to test with (`elastica_gym.rl.seeds`)."""
     recordings: int = 1
     """Evaluation episodes recorded for rerun at the end."""
     checkpoint_minutes: float = 1.0
@@ -73,15 +73,15 @@ def main() -> None:
     import tyro
 
     arguments = tyro.cli(TrainArguments)
-    from agents.progress import Bar
+    from elastica_gym.console.progress import Bar
 
     with Bar("starting"):
         folder, config = _resumed(arguments) if arguments.resume else _started(arguments)
         # torch takes seconds to import: not before the arguments are known to be good
         import yaml
 
-        from agents.checkpoints import write_atomically
-        from agents.training import Training
+        from elastica_gym.rl.checkpoints import write_atomically
+        from elastica_gym.rl.training import Training
 
         training = Training(folder, config, resume=arguments.resume is not None)
     # what the environment or the algorithm refuses does not get this far, and leaves the folder free
@@ -112,7 +112,7 @@ def _resume_command(folder: Path) -> str:
 
 def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     """Check the arguments of a new run and make its folder; return that and what goes into its config.yml."""
-    from agents import hyperparameters, machine
+    from elastica_gym.rl import hyperparameters, machine
 
     choose_environment(arguments.env)
     overrides = hyperparameters.parse_overrides(arguments.set)
@@ -136,7 +136,7 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
 
 def _start(start: str | None) -> str | None:
     """Return the name of a pretrained policy as it is, and the whole path of a run."""
-    from agents.cards import names
+    from elastica_gym.rl.cards import names
 
     if start is None or start in names():
         return start
@@ -151,8 +151,8 @@ _NOT_IN_CONFIG = {"set", "n_envs", "out", "folder", "resume"}
 
 def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     """Read the config.yml of a run, with the budget that the arguments may extend."""
-    from agents import hyperparameters
-    from agents.policies import read_config
+    from elastica_gym.rl import hyperparameters
+    from elastica_gym.rl.policies import read_config
 
     assert arguments.resume is not None
     config = read_config(arguments.resume)

@@ -12,11 +12,11 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
-from agents.checks import check_bounds, choose, require_extra, run_command
-from agents.seeds import TEST
+from elastica_gym.console.bad_input import check_bounds, choose, require_extra, run_command
 from elastica_gym.engine.energy import Ledger
 from elastica_gym.engine.model import Model, State
 from elastica_gym.envs import IDS
+from elastica_gym.rl.seeds import TEST
 
 POLICIES = ("random", "full", "scripted", "shipped")
 CONSERVATIVE = {"ground": ("ground reaction", "ground spring"), "contact": ("contact spring",)}
@@ -65,8 +65,8 @@ class Audit:
 
 def audit(env_id: str, policy: str, *, episodes: int, steps: int, seed: int) -> Iterator[tuple[str, Audit]]:
     """Audit an environment under a kind of policy; yields nothing where it has none of that kind."""
-    from agents.cards import load_pretrained, names, read_card
-    from agents.policies import FullStrengthPolicy, baseline
+    from elastica_gym.rl.cards import load_pretrained, names, read_card
+    from elastica_gym.rl.policies import FullStrengthPolicy, baseline
 
     if policy != "shipped":
         chosen = FullStrengthPolicy() if policy == "full" else baseline(policy)
@@ -108,7 +108,7 @@ def main() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from agents.progress import track
+    from elastica_gym.console.progress import track
 
     arguments = tyro.cli(Arguments)
     for env_id in arguments.env:

@@ -6,7 +6,7 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
-from agents.checks import BadInputError, check_bounds, choose, require_extra, run_command
+from elastica_gym.console.bad_input import BadInputError, check_bounds, choose, require_extra, run_command
 from elastica_gym.envs import GOAL_IDS, IDS, TerminationReason
 
 
@@ -28,7 +28,7 @@ class Arguments:
 
 def count(env_id: str, arguments: Arguments) -> tuple[int, int, float]:
     """Return the divergences, the control steps they happened in, and the time step of the physics [s]."""
-    from agents.progress import track
+    from elastica_gym.console.progress import track
 
     n = arguments.n_envs
     try:

@@ -22,7 +22,7 @@ import gymnasium
 import numpy as np
 
 import elastica_gym.cosserat as ea
-from agents.checks import BadInputError, require_extra, run_command
+from elastica_gym.console.bad_input import BadInputError, require_extra, run_command
 from elastica_gym.envs import GOAL_IDS, IDS
 
 SEEDS = (0, 1, 2)
@@ -183,7 +183,7 @@ def _training() -> str:
 
 def policies() -> Iterator[tuple[str, Callable[[], str]]]:
     """Yield names and digests of the episodes of every shipped policy."""
-    from agents.cards import names
+    from elastica_gym.rl.cards import names
 
     for name in names():
         yield name, lambda name=name: _policy(name)
@@ -207,7 +207,7 @@ def main() -> None:
     require_extra("train")
     import tyro
 
-    from agents.progress import track
+    from elastica_gym.console.progress import track
 
     arguments = tyro.cli(Arguments)
     found = {}

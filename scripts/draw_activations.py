@@ -11,8 +11,8 @@ import gymnasium
 import numpy as np
 
 import elastica_gym  # noqa: F401  registers the environments
-from agents.checks import make_folder, require_extra, run_command
 from elastica_gym.bodies.muscles import DIRECTIONS, LEVELS, N_ACTIVATIONS, N_ARMS, N_FUNCTIONS
+from elastica_gym.console.bad_input import make_folder, require_extra, run_command
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.checks import make_folder, require_extra, run_command
 from elastica_gym.bodies import snake
 from elastica_gym.bodies.body import Body
 from elastica_gym.bodies.muscles import DIRECTIONS, LEVELS, basis
+from elastica_gym.console.bad_input import make_folder, require_extra, run_command
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -3,8 +3,8 @@
 import dataclasses
 from pathlib import Path
 
-from agents.checks import check_bounds, require_extra, run_command
-from agents.seeds import TEST
+from elastica_gym.console.bad_input import check_bounds, require_extra, run_command
+from elastica_gym.rl.seeds import TEST
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 
@@ -33,8 +33,8 @@ def main() -> None:
 
     arguments = tyro.cli(FilmArguments)
     check_bounds(dataclasses.asdict(arguments), {"every": 1, "seed": 0})
-    from agents.cards import load_pretrained
-    from agents.films import check_film, film
+    from elastica_gym.rl.cards import load_pretrained
+    from elastica_gym.rl.films import check_film, film
 
     output = arguments.output or IMAGES / f"{arguments.name}.gif"
     check_film(output, arguments.size)

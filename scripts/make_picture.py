@@ -14,8 +14,9 @@ import numpy as np
 from PIL import Image
 
 import elastica_gym  # noqa: F401  (registers the environments)
-from agents.checks import BadInputError
-from agents.progress import track
+from elastica_gym.console.bad_input import BadInputError
+from elastica_gym.console.progress import track
+from elastica_gym.scripted import scripted_policy
 from elastica_gym.viz import Policy, Rollout, Stage, framing, run_rollout
 from elastica_gym.viz.frames import animal_of, home, objects, outline, trail
 
@@ -57,8 +58,8 @@ def main() -> int:
 def policy_of(run: Path | None) -> Policy:
     """Return the policy of a training run, or the task's scripted one where there is none."""
     if run is None:
-        return lambda observations, env: env.task.scripted_policy(env)
-    from agents.policies import load_run
+        return lambda observations, env: scripted_policy(env.task)(env)
+    from elastica_gym.rl.policies import load_run
 
     return load_run(run)[0]
 

@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.stats import trim_mean
 
-from agents import machine
-from agents.checkpoints import write_atomically
-from agents.checks import BadInputError, check_bounds, choose, make_folder, require_extra, run_command
-from agents.run_files import GAIT
-from agents.seeds import TEST
+from elastica_gym.console.bad_input import BadInputError, check_bounds, choose, make_folder, require_extra, run_command
 from elastica_gym.envs import IDS
+from elastica_gym.rl import machine
+from elastica_gym.rl.checkpoints import write_atomically
+from elastica_gym.rl.run_files import GAIT
+from elastica_gym.rl.seeds import TEST
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -103,18 +103,18 @@ def cells_of(arguments: Arguments) -> list[Cell]:
 
 def pretrained() -> dict[str, str]:
     """Return the name of the pretrained policy of each environment that has one."""
-    from agents import cards
+    from elastica_gym.rl import cards
 
     return {cards.read_card(name)["environment"].rpartition("/")[2]: name for name in cards.names()}
 
 
 def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
     """Train what has to be, evaluate it, and write the cell's file."""
-    from agents import cards
-    from agents.evaluation import evaluate
-    from agents.gaits import load_gait
-    from agents.policies import Policy, baseline, load_run
-    from agents.progress import Bar
+    from elastica_gym.console.progress import Bar
+    from elastica_gym.rl import cards
+    from elastica_gym.rl.evaluation import evaluate
+    from elastica_gym.rl.policies import Policy, baseline, load_run
+    from elastica_gym.scripted.families import load_gait
 
     folder = cells / cell.name
     seconds = 0.0 if cell.policy in UNTRAINED else train(cell, arguments, folder)
@@ -290,7 +290,7 @@ def main() -> None:
 
 def write_results(out: Path, cells: Path) -> None:
     """Write the table and the plot of all cells that there are."""
-    from agents import curves
+    from elastica_gym.rl import curves
 
     found = read_cells(cells)
     if not found:

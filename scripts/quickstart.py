@@ -10,9 +10,9 @@ import tyro
 from rich.console import Console
 from rich.table import Table
 
-from agents.checks import check_bounds, run_command
-from agents.progress import track
-from agents.seeds import TEST
+from elastica_gym.console.bad_input import check_bounds, run_command
+from elastica_gym.console.progress import track
+from elastica_gym.rl.seeds import TEST
 
 ENV = "elastica_gym/SnakeForward-v1"
 ROOT = Path(__file__).resolve().parents[1]
@@ -54,9 +54,9 @@ def main() -> None:
 
 def compare(console: Console, folder: Path, arguments: Arguments) -> None:
     """Print a table of the policy that evaluated best in training and the baselines, on the same unseen seeds."""
-    from agents.evaluation import confidence, evaluate
-    from agents.policies import baseline, load_run
-    from agents.run_files import BEST
+    from elastica_gym.rl.evaluation import confidence, evaluate
+    from elastica_gym.rl.policies import baseline, load_run
+    from elastica_gym.rl.run_files import BEST
 
     policies = {"trained": load_run(ROOT / folder / BEST)[0], "published gait": baseline("seed_gait"),
                 "random": baseline("random"), "zero": baseline("zero")}  # fmt: skip

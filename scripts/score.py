@@ -5,8 +5,8 @@ import json
 import sys
 from pathlib import Path
 
-from agents import machine
-from agents.checks import make_folder, require_extra, run_command
+from elastica_gym.console.bad_input import make_folder, require_extra, run_command
+from elastica_gym.rl import machine
 
 
 @dataclasses.dataclass
@@ -40,7 +40,7 @@ def main() -> int:
     import tyro
 
     arguments = tyro.cli(Arguments)
-    from agents.judge import judge, print_score
+    from elastica_gym.hackathon.judge import judge, print_score
 
     for folder in (arguments.record, arguments.json and arguments.json.parent):
         if folder is not None:

@@ -1,7 +1,7 @@
 """Search how the scripted octopus carries its object home: ``python scripts/search_carrying.py``.
 
 Trials begin where the script has just grabbed its object. CMA-ES varies the gait with which it hurries home
-from there, `elastica_gym.envs.octopus_script.HOMEWARD`, and what counts is how soon it is home, or how near it
+from there, `elastica_gym.scripted.octopus_fetch.HOMEWARD`, and what counts is how soon it is home, or how near it
 comes, with the object held and upright.
 """
 
@@ -14,9 +14,9 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 import elastica_gym  # noqa: F401  registers the environments
-from agents.checks import BadInputError, check_bounds, make_folder, require_extra, run_command
+from elastica_gym.console.bad_input import BadInputError, check_bounds, make_folder, require_extra, run_command
 from elastica_gym.envs.handling import now
-from elastica_gym.envs.octopus_script import HOME, HOMEWARD, Gait, carry, fetch, see
+from elastica_gym.scripted.octopus_fetch import HOME, HOMEWARD, Gait, carry, fetch, see
 
 FETCH = "elastica_gym/OctopusFetch-v1"
 LONGEST = 5.5
@@ -57,7 +57,7 @@ def make(n: int, arguments: Arguments) -> Any:
 
 def grabs(arguments: Arguments) -> list[Any]:
     """Return the states of octopuses that have just grabbed their object."""
-    from agents.progress import track
+    from elastica_gym.console.progress import track
 
     batch, found = make(arguments.grabs, arguments), []
     batch.reset(seed=arguments.seed)
@@ -149,7 +149,7 @@ def main() -> None:
     import tyro
     import yaml
 
-    from agents.progress import Bar
+    from elastica_gym.console.progress import Bar
 
     arguments = tyro.cli(Arguments, description=__doc__)
     check_bounds(dataclasses.asdict(arguments), LOWEST)

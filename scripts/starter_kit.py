@@ -38,7 +38,7 @@ def policy(observation: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     observation
-        (210,); the table is in `elastica_gym.envs.octopus_reach`.
+        (210,); the table is in `elastica_gym.envs.tasks.octopus_reach`.
 
     Returns
     -------
@@ -85,8 +85,8 @@ def main() -> None:
     """Run the command line."""
     import tyro
 
-    from agents.checks import check_bounds, choose, environment_ids
     from agents.evaluate import spreads
+    from elastica_gym.console.bad_input import check_bounds, choose, environment_ids
 
     arguments = tyro.cli(Arguments)
     check_bounds(dataclasses.asdict(arguments), {"imitate": 1, "targets": 1, "seconds": 0.05})
@@ -128,6 +128,6 @@ def run(*command: Any) -> None:
 
 
 if __name__ == "__main__":
-    from agents.checks import run_command
+    from elastica_gym.console.bad_input import run_command
 
     run_command(main)

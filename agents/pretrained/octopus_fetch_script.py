@@ -1,12 +1,12 @@
 """OctopusFetch by script: the octopus walks to its object, bends an arm around it and carries it home.
 
-It is `elastica_gym.envs.octopus_script`, whose tables CMA-ES has found, and adds what that is told by the
+It is `elastica_gym.scripted.octopus_fetch`, whose tables CMA-ES has found, and adds what that is told by the
 environment: it counts the time, and sees whether the object is grabbed by where the goal is.
 """
 
 import numpy as np
 
-from elastica_gym.envs.octopus_script import act, see
+from elastica_gym.scripted.octopus_fetch import act, see
 
 CONTROL_DT = 0.05
 """From one action to the next [s]"""
@@ -18,7 +18,7 @@ steps = 0
 
 
 def policy(observation: np.ndarray) -> np.ndarray:
-    """Return the actions (42,) for an observation (210,) of `elastica_gym.envs.octopus_fetch`."""
+    """Return the actions (42,) for an observation (210,) of `elastica_gym.envs.tasks.octopus_fetch`."""
     global steps
     time = steps * CONTROL_DT
     steps += 1

@@ -3,11 +3,10 @@
 from .batch import BatchEnv
 from .documentation import document
 from .goal import GoalTask, goal_conditioned
-from .hackathon import Environment
 from .registration import GOAL_IDS, IDS, register, register_all, registered_ids, task_of
 from .single import SingleEnv
 from .task import Situation, Task, TerminationReason
 
-__all__ = ["GOAL_IDS", "IDS", "BatchEnv", "Environment", "GoalTask", "SingleEnv", "Situation", "Task",
+__all__ = ["GOAL_IDS", "IDS", "BatchEnv", "GoalTask", "SingleEnv", "Situation", "Task",
            "TerminationReason", "document", "goal_conditioned", "register", "register_all", "registered_ids",
            "task_of"]  # fmt: skip

@@ -2,7 +2,7 @@
 
 Description
 -----------
-The animals and starts of `elastica_gym.envs.snake_reach` and `elastica_gym.envs.octopus_reach`, as environments
+The animals and starts of `.tasks.snake_reach` and `.tasks.octopus_reach`, as environments
 whose goal can be changed afterwards (Andrychowicz et al. 2017): an episode that went elsewhere is a good one for
 the place where it went. The snake's goal is its target, the octopus's the place where its object stands at the start.
 
@@ -44,7 +44,7 @@ The observations are for Stable-Baselines3's ``MultiInputPolicy`` and its replay
 adapter of this package::
 
     from stable_baselines3 import SAC, HerReplayBuffer
-    from agents.vec_env import make_batch_vec_env
+    from elastica_gym.rl import make_batch_vec_env
 
     envs = make_batch_vec_env("elastica_gym/SnakeReachGoal-v1", n_envs=16)
     model = SAC("MultiInputPolicy", envs, replay_buffer_class=HerReplayBuffer, learning_starts=6400, train_freq=4)
@@ -72,10 +72,10 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from ..engine.model import Array
-from . import octopus_reach, snake_reach
 from .batch import BatchEnv
 from .single import SingleEnv
 from .task import Mask, Situation, Task
+from .tasks import octopus_reach, snake_reach
 
 Parts = dict[str, NDArray[np.float32]]
 
@@ -86,10 +86,13 @@ class GoalTask(Task):
 
     Attributes
     ----------
+    base : str
+        Name of the task whose animal and starts it has.
     tolerance : float
         Distance of the head from the goal that is near enough, in body lengths.
     """
 
+    base: str
     tolerance: float
 
 
@@ -149,7 +152,7 @@ def goal_conditioned(
         Distance of the head from the place that is near enough, in body lengths.
     """
     own = dict(
-        name=f"{task.name}Goal", goal_size=3, draw_goal=draw_goal, see_goal=see_goal,
+        name=f"{task.name}Goal", base=task.name, goal_size=3, draw_goal=draw_goal, see_goal=see_goal,
         goal_bounds=((-1.0, 1.0),) * 2 + ((-4.0, 4.0),) * 4,
         goal_names=("heading/x", "heading/z", "achieved/x", "achieved/z", "desired/x", "desired/z"),
         reward_terms={"reached": partial(reached, tolerance=tolerance)},

@@ -5,7 +5,11 @@ from typing import Any
 import gymnasium
 from gymnasium.wrappers import HumanRendering
 
-from . import (
+from .batch import RENDER_MODES, BatchEnv
+from .goal import GOAL_TASKS, GoalBatchEnv, GoalEnv, GoalTask
+from .single import SingleEnv
+from .task import Task
+from .tasks import (
     octopus_crawl,
     octopus_fetch,
     octopus_grab,
@@ -16,10 +20,6 @@ from . import (
     snake_reach,
     snake_steer,
 )
-from .batch import RENDER_MODES, BatchEnv
-from .goal import GOAL_TASKS, GoalBatchEnv, GoalEnv, GoalTask
-from .single import SingleEnv
-from .task import Task
 
 SHIPPED = {
     f"elastica_gym/{task.name}-v1": task

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,8 +110,6 @@ class Task:
         episode, (B,) bool.
     target : callable
         From goals, the target's position in the lab [m], (B, 3), or None where there is none to show.
-    scripted_policy : callable
-        From a `BatchEnv`, the actions of a policy written by hand, (B, 42).
     """
 
     name: str
@@ -132,7 +130,6 @@ class Task:
     follow: Callable[[Situation, State], Array] = follow_nothing
     failures: dict[str, Callable[[Situation], Mask]] = field(default_factory=dict)
     target: Callable[[Array], Array | None]
-    scripted_policy: Callable[[Any], Array]
 
     def __post_init__(self) -> None:
         if not self.starts:

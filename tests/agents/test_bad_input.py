@@ -7,8 +7,9 @@ import sys
 
 import pytest
 
-from agents import checks, policies
-from agents.checkpoints import checkpoint_folders, find_damage
+from elastica_gym.console import bad_input as checks
+from elastica_gym.rl import policies
+from elastica_gym.rl.checkpoints import checkpoint_folders, find_damage
 from tests.agents.commands import FORWARD, ROOT, SMALL_PPO, environment, run
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import yaml
 
-from agents import cards, hyperparameters
-from agents.checks import BadInputError
-from agents.evaluation import evaluate
-from agents.policies import load_run
+from elastica_gym.console.bad_input import BadInputError
+from elastica_gym.rl import cards, hyperparameters
+from elastica_gym.rl.evaluation import evaluate
+from elastica_gym.rl.policies import load_run
 from tests.agents.commands import FORWARD, REACH, ROOT, SMALL_PPO, run
 from tests.agents.test_bad_input import refused
 

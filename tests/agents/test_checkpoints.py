@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from agents import checkpoints
+from elastica_gym.rl import checkpoints
 
 
 def write(folder: Path, steps: int, text: str = "weights") -> Path:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import yaml
 
-from agents import curves
-from agents.run_files import EVALUATIONS, METRICS, Table
+from elastica_gym.rl import curves
+from elastica_gym.rl.run_files import EVALUATIONS, METRICS, Table
 from tests.agents.commands import FORWARD
 
 

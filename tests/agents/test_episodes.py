@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agents.episodes import Episodes
+from elastica_gym.rl.episodes import Episodes
 
 LONGEST = 10
 

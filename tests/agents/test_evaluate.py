@@ -7,11 +7,11 @@ import pytest
 from PIL import Image
 from stable_baselines3 import PPO
 
-from agents import policies
-from agents.checks import BadInputError
-from agents.evaluation import Evaluation, confidence, evaluate, success_interval
-from agents.films import check_film, film
-from agents.vec_env import make_batch_vec_env
+from elastica_gym.console.bad_input import BadInputError
+from elastica_gym.rl import policies
+from elastica_gym.rl.evaluation import Evaluation, confidence, evaluate, success_interval
+from elastica_gym.rl.films import check_film, film
+from elastica_gym.rl.vec_env import make_batch_vec_env
 from tests.agents.commands import FORWARD, REACH, run
 from tests.agents.test_bad_input import refused
 
@@ -33,7 +33,7 @@ def test_an_episode_depends_on_its_seed_alone(env_id, policy, monkeypatch):
     acting = untrained(env_id) if policy == "network" else policies.baseline(policy)
     together = evaluate(acting, env_id, episodes=5, seed=10, env_kwargs=SHORT)
     later = evaluate(acting, env_id, episodes=2, seed=12, n_threads=1, env_kwargs=SHORT)
-    monkeypatch.setattr("agents.evaluation.LARGEST_BATCH", 2)
+    monkeypatch.setattr("elastica_gym.rl.evaluation.LARGEST_BATCH", 2)
     in_turns = evaluate(acting, env_id, episodes=5, seed=10, env_kwargs=SHORT)
     np.testing.assert_array_equal(together.seeds, np.arange(10, 15))
     for name, values in per_episode(together).items():

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from stable_baselines3 import SAC, HerReplayBuffer
 
-from agents.vec_env import make_batch_vec_env
 from elastica_gym.envs import GOAL_IDS
+from elastica_gym.rl.vec_env import make_batch_vec_env
 
 
 @pytest.mark.parametrize("env_id", GOAL_IDS)

@@ -6,11 +6,11 @@ from stable_baselines3.common.utils import LinearSchedule
 from stable_baselines3.common.vec_env import VecNormalize
 from torch import nn
 
-from agents import hyperparameters
-from agents.allowed_values import ALLOWED
-from agents.checks import EXTRAS, BadInputError
-from agents.vec_env import make_batch_vec_env
+from elastica_gym.console.bad_input import EXTRAS, BadInputError
 from elastica_gym.envs import IDS
+from elastica_gym.rl import hyperparameters
+from elastica_gym.rl.allowed_values import ALLOWED
+from elastica_gym.rl.vec_env import make_batch_vec_env
 from tests.agents.commands import FORWARD, ROOT
 
 

@@ -3,11 +3,12 @@
 import numpy as np
 import torch
 
-from agents.hyperparameters import algorithm_arguments, load
-from agents.imitation import CRITIC_UPDATES, ROUNDS, _difference, critic_alone
-from agents.policies import load_run
-from agents.run_files import EVALUATIONS, METRICS, read_table
-from agents.vec_env import make_batch_vec_env
+from elastica_gym.rl.hyperparameters import algorithm_arguments, load
+from elastica_gym.rl.imitation import CRITIC_UPDATES, ROUNDS, _difference, critic_alone
+from elastica_gym.rl.policies import load_run
+from elastica_gym.rl.run_files import EVALUATIONS, METRICS, read_table
+from elastica_gym.rl.vec_env import make_batch_vec_env
+from elastica_gym.scripted import scripted_policy
 from tests.agents.commands import FORWARD, SMALL_PPO, run
 from tests.agents.test_bad_input import refused
 
@@ -20,7 +21,7 @@ def difference_from_script(policy) -> float:
     env.seed(50)
     observations, differences = env.reset(), []
     for _ in range(10):
-        scripted = np.clip(env.batch.task.scripted_policy(env.batch), -1.0, 1.0)
+        scripted = np.clip(scripted_policy(env.batch.task)(env.batch), -1.0, 1.0)
         differences.append(np.mean((policy(observations, env.batch) - scripted) ** 2))
         observations, *_ = env.step(scripted)
     env.close()

@@ -13,14 +13,15 @@ from gymnasium.vector import AutoresetMode
 from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import VecNormalize
 
-from agents import policies
-from agents.checks import BadInputError
-from agents.judge import judge
-from agents.policy_process import PolicyError, PolicyProcess
-from agents.scoring import GOALS, goals_held, grabbed, moved
-from agents.seeds import SCORED, TEST, TRAINED, VALIDATION, target_seeds
-from agents.trials import SAMPLE_TIME, run_trials
-from agents.vec_env import make_batch_vec_env
+from elastica_gym.console.bad_input import BadInputError
+from elastica_gym.hackathon.judge import judge
+from elastica_gym.hackathon.policy_process import PolicyError, PolicyProcess
+from elastica_gym.hackathon.scoring import GOALS, goals_held, grabbed, moved
+from elastica_gym.hackathon.trials import SAMPLE_TIME, run_trials
+from elastica_gym.rl import policies
+from elastica_gym.rl.seeds import SCORED, TEST, TRAINED, VALIDATION, target_seeds
+from elastica_gym.rl.vec_env import make_batch_vec_env
+from elastica_gym.scripted import scripted_policy
 from tests.agents.commands import ROOT, environment
 
 REACH = "elastica_gym/OctopusReach-v1"
@@ -301,7 +302,7 @@ def test_all_goals_can_be_held():
         seen["batch"] = batch
 
     def script(observations, shape):
-        return seen["batch"].task.scripted_policy(seen["batch"])
+        return scripted_policy(seen["batch"].task)(seen["batch"])
 
     samples = run_trials(script, FETCH, seeds=target_seeds(2020, 0, 10), watch=watch, spread="default")
     assert goals_held(samples)[-1].any()

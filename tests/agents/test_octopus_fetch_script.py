@@ -8,10 +8,10 @@ import pytest
 from gymnasium.vector import AutoresetMode
 
 import agents
-from agents.policy_file import FilePolicy
-from elastica_gym.envs import octopus_script
 from elastica_gym.envs.handling import Handling, now
-from elastica_gym.envs.octopus_fetch import see_goal
+from elastica_gym.envs.tasks.octopus_fetch import see_goal
+from elastica_gym.rl.policy_file import FilePolicy
+from elastica_gym.scripted import octopus_fetch as octopus_script
 
 POLICY = Path(agents.__file__).parent / "pretrained" / "octopus_fetch_script.py"
 FETCH = "elastica_gym/OctopusFetch-v1"

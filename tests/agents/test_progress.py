@@ -5,8 +5,8 @@ import re
 
 import pytest
 
-from agents import progress
-from agents.progress import Bar, LogLines, ProgressDisplay, track
+from elastica_gym.console import progress
+from elastica_gym.console.progress import Bar, LogLines, ProgressDisplay, track
 
 
 @pytest.fixture

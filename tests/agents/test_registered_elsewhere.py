@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from agents.checks import choose_environment
-from agents.evaluation import evaluate
-from agents.policies import BASELINES, baseline
+from elastica_gym.console.bad_input import choose_environment
+from elastica_gym.rl.evaluation import evaluate
+from elastica_gym.rl.policies import BASELINES, baseline
 from tests.agents.commands import FORWARD, SMALL_PPO, run
 from tests.agents.test_bad_input import refused
 from tests.envs.toy import TOY, TOY_GOAL

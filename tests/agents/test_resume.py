@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from agents.checkpoints import checkpoint_folders
-from agents.policies import TrainedPolicy, load_run
+from elastica_gym.rl.checkpoints import checkpoint_folders
+from elastica_gym.rl.policies import TrainedPolicy, load_run
 from tests.agents.commands import ROOT, SMALL_PPO, arguments, environment, run
 
 STEPS = 2000

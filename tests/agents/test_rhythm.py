@@ -5,10 +5,10 @@ import pytest
 import torch
 from stable_baselines3 import PPO
 
-from agents.hyperparameters import CONFIGS, algorithm_arguments, load
-from agents.policies import load_run
-from agents.rhythm import MOST, Rhythms
-from agents.vec_env import make_batch_vec_env
+from elastica_gym.rl.hyperparameters import CONFIGS, algorithm_arguments, load
+from elastica_gym.rl.policies import load_run
+from elastica_gym.rl.rhythm import MOST, Rhythms
+from elastica_gym.rl.vec_env import make_batch_vec_env
 from tests.agents.commands import SMALL, SMALL_EPISODES, run
 
 PERIODS = (0.37, 1.85)

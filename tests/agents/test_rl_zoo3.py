@@ -6,8 +6,8 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 
-from agents.hyperparameters import algorithm_arguments, load
-from agents.symmetry import SymmetricPolicy
+from elastica_gym.rl.hyperparameters import algorithm_arguments, load
+from elastica_gym.rl.symmetry import SymmetricPolicy
 from tests.agents.commands import FORWARD, REACH, ROOT, run
 
 pytest.importorskip("rl_zoo3")

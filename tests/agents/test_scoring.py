@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from agents import scoring
-from agents.scoring import GOALS, Samples, goals_held, score
 from elastica_gym.envs import handling
+from elastica_gym.hackathon import scoring
+from elastica_gym.hackathon.scoring import GOALS, Samples, goals_held, score
 
 DT = 0.01
 END = 12.0

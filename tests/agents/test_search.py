@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 import yaml
 
-from agents import cmaes, gaits, policies
-from agents.cards import load_pretrained
-from agents.checks import BadInputError
-from agents.evaluation import Evaluation, evaluate, run_episodes
-from agents.run_files import GAIT, SEARCH, read_table
-from agents.vec_env import make_batch_vec_env
 from elastica_gym.bodies import octopus, snake
+from elastica_gym.console.bad_input import BadInputError
+from elastica_gym.rl import cmaes, policies
+from elastica_gym.rl.cards import load_pretrained
+from elastica_gym.rl.evaluation import Evaluation, evaluate, run_episodes
+from elastica_gym.rl.run_files import GAIT, SEARCH, read_table
+from elastica_gym.rl.vec_env import make_batch_vec_env
+from elastica_gym.scripted import families as gaits
 from tests.agents.commands import FORWARD, REACH, ROOT, run
 from tests.agents.test_bad_input import refused
 

@@ -10,7 +10,7 @@ import pytest
 import yaml
 from gymnasium.vector import AutoresetMode
 
-from elastica_gym.envs.octopus_script import HOMEWARD, carry
+from elastica_gym.scripted.octopus_fetch import HOMEWARD, carry
 from tests.agents.commands import ROOT, environment
 
 RETURN = "elastica_gym/OctopusReturn-v1"

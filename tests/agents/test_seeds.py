@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from agents.seeds import RUNS, SCORED, TEST, TRAINED, VALIDATION, target_seeds, training_seeds
 from agents.train import TrainArguments, _started
-from agents.training import Training
+from elastica_gym.rl.seeds import RUNS, SCORED, TEST, TRAINED, VALIDATION, target_seeds, training_seeds
+from elastica_gym.rl.training import Training
 
 
 def test_runs_share_no_seeds_with_each_other_or_with_evaluations():

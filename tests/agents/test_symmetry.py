@@ -10,10 +10,10 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 
 import elastica_gym  # noqa: F401
-from agents.rhythm import RhythmicPolicy
-from agents.symmetry import SymmetricPolicy
 from elastica_gym.bodies.muscles import activation_names
 from elastica_gym.envs.batch import CLOCK_PERIOD
+from elastica_gym.rl.rhythm import RhythmicPolicy
+from elastica_gym.rl.symmetry import SymmetricPolicy
 
 IDS = ("elastica_gym/OctopusCrawl-v1", "elastica_gym/SnakeForward-v1")
 TRAINED = (*IDS, "elastica_gym/SnakeSteer-v1")

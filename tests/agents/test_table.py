@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from agents.checks import BadInputError
+from elastica_gym.console.bad_input import BadInputError
 from tests.agents.commands import ROOT, environment
 
 SCRIPT = ROOT / "scripts" / "make_table.py"

@@ -10,13 +10,13 @@ from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
 
-from agents import hyperparameters, training, transfer
-from agents.cards import command_of, load_pretrained
-from agents.policies import load_run
-from agents.run_files import METRICS, read_table
-from agents.seeds import training_seeds
 from agents.train import TrainArguments, _started
-from agents.vec_env import make_batch_vec_env, observation_names
+from elastica_gym.rl import hyperparameters, training, transfer
+from elastica_gym.rl.cards import command_of, load_pretrained
+from elastica_gym.rl.policies import load_run
+from elastica_gym.rl.run_files import METRICS, read_table
+from elastica_gym.rl.seeds import training_seeds
+from elastica_gym.rl.vec_env import make_batch_vec_env, observation_names
 from tests.agents.commands import FORWARD, REACH, SMALL, SMALL_EPISODES, SMALL_PPO, run
 
 CRAWL, STEER = "elastica_gym/OctopusCrawl-v1", "elastica_gym/SnakeSteer-v1"

@@ -5,7 +5,7 @@ from gymnasium.vector import AutoresetMode
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import DummyVecEnv, VecMonitor, VecNormalize, VecVideoRecorder
 
-from agents.vec_env import BatchVecEnv, make_batch_vec_env
+from elastica_gym.rl.vec_env import BatchVecEnv, make_batch_vec_env
 from tests.agents.commands import FORWARD, REACH
 
 DURATION = 0.5

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
-from agents.cards import load_pretrained, names, read_card
-from agents.policies import FullStrengthPolicy, Policy, ZeroPolicy, baseline
 from elastica_gym.envs import IDS
+from elastica_gym.rl.cards import load_pretrained, names, read_card
+from elastica_gym.rl.policies import FullStrengthPolicy, Policy, ZeroPolicy, baseline
 
 RESTING, STRIKING = 0.25, 0.5
 """Parts of a section's radius by which it may sink in at rest, and at most"""

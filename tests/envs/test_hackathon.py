@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from elastica_gym.envs import Environment
+from elastica_gym.hackathon import Environment
 
 TARGET = np.array([-0.4, 0.0, 0.5])
 

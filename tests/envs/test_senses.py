@@ -60,7 +60,7 @@ def test_levels_are_those_of_the_couples(make_vec):
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_bend_to_the_right_turns_to_the_right(make_vec, sign):
     """Right is what forward x up points to: +z for a snake along +x with y up."""
-    from elastica_gym.envs.gaits import snake_crawl
+    from elastica_gym.scripted.gaits import snake_crawl
 
     env = make_vec(FORWARD, 4, duration=5.0)
     env.reset(seed=0)

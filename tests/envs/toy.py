@@ -5,8 +5,9 @@ import numpy as np
 import elastica_gym
 from elastica_gym.bodies import snake
 from elastica_gym.envs import Task, goal_conditioned
-from elastica_gym.envs.gaits import snake_crawl
 from elastica_gym.envs.starts import draw_start
+from elastica_gym.scripted import register_script
+from elastica_gym.scripted.gaits import snake_crawl
 
 TOY, TOY_GOAL = "tests/SnakeAway-v0", "tests/SnakeAwayGoal-v0"
 
@@ -43,7 +44,7 @@ def no_target(goal):
     return None
 
 
-def scripted_policy(env):
+def crawl_on(env):
     return snake_crawl(env, np.zeros(env.num_envs))
 
 
@@ -69,8 +70,8 @@ AWAY = Task(
     ends_on_success=False,
     failures={"lost": lost},
     target=no_target,
-    scripted_policy=scripted_policy,
 )
 
 elastica_gym.register(TOY, AWAY)
+register_script(AWAY.name, crawl_on)
 elastica_gym.register(TOY_GOAL, goal_conditioned(AWAY, draw_goal=draw_goal_nearby, tolerance=0.05))

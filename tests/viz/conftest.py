@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 
+from elastica_gym.scripted import scripted_policy
 from elastica_gym.viz import Rollout, run_rollout
 
 
 def scripted(observations, env):
-    return env.task.scripted_policy(env)
+    return scripted_policy(env.task)(env)
 
 
 def pushing(observations, env):

@@ -1,0 +1,139 @@
+"""A policy in a process of its own, which gets observations and gives actions, as arrays, and nothing else.
+
+What passes between the two are arrays in NumPy's file format, without pickled objects. A one-dimensional array begins
+as many episodes as it has numbers, and is answered by itself; observations (n, d) are answered by actions (n, 42).
+"""
+
+import io
+import multiprocessing
+import signal
+import sys
+from multiprocessing.connection import Connection
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+
+from ..console.bad_input import BadInputError
+from ..rl.policy_file import FilePolicy
+
+LOADING_TIME = 180.0
+"""How long a policy may take to load and to begin episodes [s]"""
+ACTING_TIME = 60.0
+"""How long it may take for the actions of one control step of all episodes [s]"""
+LONGEST_ANSWER = 1 << 26
+"""Most bytes that are read of an answer"""
+
+
+class PolicyError(Exception):
+    """The policy has crashed, is too slow, or does not return actions; the message says which."""
+
+
+class PolicyProcess:
+    """Runs a policy in a process of its own; a context manager.
+
+    Parameters
+    ----------
+    path
+        A Python file, see `FilePolicy`; the folder of a run; the ``model.zip`` in it; or the zip of
+        a pretrained policy, beside its card.
+    loading_time, acting_time
+        How long the policy may take [s].
+    """
+
+    def __init__(self, path: Path, *, loading_time: float = LOADING_TIME, acting_time: float = ACTING_TIME):
+        if not path.exists():
+            raise BadInputError(f"There is no policy {path}; give a Python file, a run's folder or its zip.")
+        context = multiprocessing.get_context("spawn")
+        self._loading_time, self._acting_time = loading_time, acting_time
+        self._pipe, far_end = context.Pipe()
+        self._process = context.Process(target=_serve, args=(far_end, path), daemon=True)
+        self._process.start()
+        far_end.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._pipe.close()
+        self._process.kill()
+        self._process.join()
+
+    def begin(self, n: int) -> None:
+        """Begin n episodes side by side."""
+        self._ask(np.zeros(n), self._loading_time, "to load")
+
+    def __call__(self, observations: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+        """Return the actions for observations (n, d), which must have a given shape.
+
+        Raises
+        ------
+        PolicyError
+            If the policy has crashed, is too slow, or returns something else than finite numbers of that shape.
+        """
+        actions = self._ask(observations, self._acting_time, "for its actions")
+        if actions.shape != shape:
+            raise PolicyError(f"the policy returned actions of shape {actions.shape}, not {shape}")
+        if not np.issubdtype(actions.dtype, np.floating) or not np.isfinite(actions).all():
+            raise PolicyError("the policy returned actions that are not finite numbers")
+        return actions
+
+    def _ask(self, message: np.ndarray, patience: float, what: str) -> np.ndarray:
+        try:
+            self._pipe.send_bytes(_to_bytes(message))
+            if not self._pipe.poll(patience):
+                raise PolicyError(f"the policy took more than {patience:g} s {what}")
+            return _from_bytes(self._pipe.recv_bytes(LONGEST_ANSWER))
+        except ValueError as error:
+            raise PolicyError(f"the policy's process returned something that is no array: {error}") from None
+        except (EOFError, OSError) as error:
+            self._process.join(5.0)
+            if self._process.is_alive():
+                raise PolicyError(f"the policy's process does not answer: {error}") from None
+        raise PolicyError(f"the policy's process has ended (status {self._process.exitcode}); see above for why")
+
+
+def _serve(pipe: Connection, path: Path) -> None:
+    """Answer until the pipe is closed."""
+    # Ctrl-C is for who started it
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        policy = _load(path)
+    except BadInputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        raise SystemExit(2) from None
+    while True:
+        try:
+            message = _from_bytes(pipe.recv_bytes())
+        except EOFError:
+            return
+        if message.ndim == 1:
+            policy.reset([0] * message.size)
+            pipe.send_bytes(_to_bytes(message))
+        else:
+            pipe.send_bytes(_to_bytes(np.asarray(policy(message, None))))
+
+
+def _load(path: Path) -> Any:
+    if path.suffix == ".py":
+        return FilePolicy(path)
+    # a second and more to import, which files do not need
+    from ..rl.cards import load_pretrained
+    from ..rl.policies import load_run
+
+    if path.suffix == ".zip" and path.with_suffix(".yml").exists():
+        return load_pretrained(path.stem, path.parent)[0]
+    return load_run(path.parent if path.suffix == ".zip" else path)[0]
+
+
+def _to_bytes(array: np.ndarray) -> bytes:
+    file = io.BytesIO()
+    np.save(file, array, allow_pickle=False)
+    return file.getvalue()
+
+
+def _from_bytes(data: bytes) -> np.ndarray:
+    return np.load(io.BytesIO(data), allow_pickle=False)

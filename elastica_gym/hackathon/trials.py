@@ -1,0 +1,141 @@
+"""Trials: a policy on many targets at once, with the State sampled every 10 ms or finer."""
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+
+import elastica_gym  # noqa: F401  registers the environments
+from elastica_gym.bodies import grip
+from elastica_gym.bodies.body import activate
+from elastica_gym.engine import State
+from elastica_gym.engine.model import make_control, make_state
+from elastica_gym.engine.threads import Team
+
+from .scoring import Samples, goals_held
+
+SAMPLE_TIME = 0.01
+"""Most time from one sample to the next [s]"""
+STEPS_BETWEEN_LOOKS = 20
+"""Control steps after which it is seen whether there is anything left to do"""
+
+Actor = Callable[[np.ndarray, tuple[int, ...]], np.ndarray]
+"""Observations (n, d) and the shape of the actions in, actions out"""
+
+
+class Sampler:
+    """Samples of a batch of environments, within their control steps too.
+
+    The batch itself runs as always, to the bit. What happens within a control step is told from a copy of its state
+    that runs through the same step in parts, and starts from the batch again at the next. Episodes that are over are
+    not copied.
+
+    Parameters
+    ----------
+    batch
+        A `BatchEnv` of animals with an object, which has been reset.
+    """
+
+    def __init__(self, batch: Any):
+        self._batch = batch
+        model, n = batch.body.model, batch.num_envs
+        self._copy, self._control = make_state(model, n), make_control(model, n)
+        self._team = Team(model, self._copy, self._control, batch.n_threads)
+        n_parts = math.ceil(batch.n_substeps / math.floor(SAMPLE_TIME / batch.sim_dt + 1e-9))
+        cuts = [batch.n_substeps * part // n_parts for part in range(n_parts + 1)]
+        # the end of the control step is the batch's own
+        self._parts = [end - begin for begin, end in itertools.pairwise(cuts)][:-1]
+        self.is_over = np.zeros(n, dtype=bool)
+        self._times: list[float] = []
+        self._moments: list[tuple[np.ndarray, ...]] = []
+        self._look(batch.state, np.arange(n))
+
+    def before(self, actions: np.ndarray) -> None:
+        """Take the samples within a control step, before the batch does it."""
+        batch, going = self._batch, np.flatnonzero(~self.is_over)
+        for copied, field in zip((*self._copy, *self._control), (*batch.state, *batch.control), strict=True):
+            copied[: going.size] = field[going]
+        # as the batch does it
+        levels = np.clip(np.asarray(actions, dtype=np.float64), -1.0, 1.0)
+        activate(batch.body.couples, levels[going], self._control.couple[: going.size])
+        for n_substeps in self._parts:
+            self._team.advance(going.size, batch.sim_dt, n_substeps)
+            self._look(self._copy, going)
+
+    def after(self) -> None:
+        """Take the sample at the end of a control step, but first see which episodes have failed."""
+        going = np.flatnonzero(~self.is_over)
+        situation = self._batch.situation()
+        self.is_over |= situation.pose.sound == 0
+        for failed in self._batch.task.failures.values():
+            self.is_over |= failed(situation)
+        self._look(State._make(field[going] for field in self._batch.state), going)
+
+    def samples(self) -> Samples:
+        """Return all that has been seen."""
+        return Samples(np.array(self._times), *(np.array(series) for series in zip(*self._moments, strict=True)))
+
+    def _look(self, state: State, going: np.ndarray) -> None:
+        """Sample the first states, which are those of the environments that go on."""
+        n, plane, body = going.size, [0, 2], self._batch.body
+        x, mass = state.x[:n, plane], body.model.mass
+        hold = grip(body, State._make(field[:n] for field in state))
+        seen: tuple[Any, ...] = (
+            ~self.is_over[going], x[..., body.senses.head], (x * mass).sum(axis=2) / mass.sum(), hold.head_gap,
+            hold.touching.any(axis=1), hold.base[:, plane], hold.tilt, hold.spans, hold.counts,
+        )  # fmt: skip
+        self._times.append(float(state.time[:n].max()))
+        if self._moments:
+            new, seen = seen, tuple(map(np.copy, self._moments[-1]))
+            # of those that are over, what has been seen last stays, and does not count
+            seen[0][:] = False
+            for kept, fresh in zip(seen, new, strict=True):
+                kept[going] = fresh
+        self._moments.append(seen)
+
+
+def run_trials(
+    actor: Actor, env_id: str, *, seeds: Sequence[int], watch: Callable[[Any, Sampler, dict[str, Any] | None], None],
+    **env_kwargs: Any,
+) -> Samples:  # fmt: skip
+    """Run an episode for each seed, side by side, and return their samples.
+
+    They go on to their time limit, even where the task would end them with success, but for those that have failed or
+    in which all goals hold.
+
+    Parameters
+    ----------
+    actor
+        The policy.
+    env_id
+        Id of an environment with an animal and its object.
+    seeds
+        Seed of each episode.
+    watch
+        Called with the batch, the sampler, and the info of the step or None, at the start and after each control step.
+    **env_kwargs
+        Arguments of the environment.
+    """
+    env = gymnasium.make_vec(env_id, num_envs=len(seeds), autoreset_mode=AutoresetMode.DISABLED, **env_kwargs)
+    batch: Any = env.unwrapped
+    observations, _ = batch.reset(seed=list(seeds))
+    sampler = Sampler(batch)
+    try:
+        watch(batch, sampler, None)
+        for step in range(1, batch.max_episode_steps + 1):
+            actions = actor(observations, batch.action_space.shape)
+            sampler.before(actions)
+            observations, _, _, _, infos = batch.step(actions)
+            sampler.after()
+            watch(batch, sampler, infos)
+            if step % STEPS_BETWEEN_LOOKS == 0:
+                sampler.is_over |= goals_held(sampler.samples())[-1]
+            if sampler.is_over.all():
+                break
+        return sampler.samples()
+    finally:
+        env.close()

@@ -1,0 +1,121 @@
+"""Films and recordings of an episode: an H.264 video, an animated GIF, or a file for rerun."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..console.bad_input import BadInputError, choose, make_folder, missing_extra, require_extra
+from ..console.progress import Bar
+
+if TYPE_CHECKING:
+    from .policies import Policy
+
+SUFFIXES = (".mp4", ".gif")
+COLORS = 64
+"""Of a GIF: more make it larger, and hardly better"""
+SIZE = (640, 360)
+"""Width and height of a film unless others are asked for [pixels]"""
+LARGEST_SIDE = 2048
+"""Of a picture [pixels]"""
+
+
+def check_film(path: Path, size: tuple[int, int]) -> None:
+    """Make sure, before an episode is run for it, that a film can be made: packages, folder, file, renderer.
+
+    Raises
+    ------
+    BadInputError
+        If it cannot; the message says why.
+    """
+    choose("kind of film", path.suffix, SUFFIXES)
+    if not all(1 <= side <= LARGEST_SIDE and side % 2 == 0 for side in size):
+        raise BadInputError(f"size must be two even numbers up to {LARGEST_SIDE}, got {size[0]} {size[1]}")
+    require_extra("viz")
+    make_folder(path.parent)
+    from elastica_gym.viz import Stage
+
+    try:
+        Stage(width=size[0], height=size[1]).close()
+    except RuntimeError as error:
+        raise BadInputError(f"no film: {error}") from error
+
+
+def film(
+    policy: "Policy", env_id: str, path: Path, *, seed: int, every: int = 1, size: tuple[int, int] = SIZE,
+    env_kwargs: dict[str, Any] | None = None,
+) -> Path:  # fmt: skip
+    """Run an episode, draw it, write it to a file, and say where that is.
+
+    Parameters
+    ----------
+    policy
+        Whose episode.
+    env_id
+        Id of the environment.
+    path
+        The file, which ends in .mp4 or .gif.
+    seed
+        Of the episode.
+    every
+        Control steps from one frame to the next; the film is as fast as the animal.
+    size
+        Width and height [pixels], even numbers.
+    env_kwargs
+        Arguments of the environment.
+    """
+    from elastica_gym.viz import render_frames, write_video
+
+    check_film(path, size)
+    policy.reset([seed])
+    rollout = run_shown(policy, env_id, seed=seed, env_kwargs=env_kwargs or {})
+    moments = range(0, len(rollout.step), every)
+    with Bar(f"drawing {len(moments)} frames") as bar:
+        frames = render_frames(rollout, moments, width=size[0], height=size[1], show=bar.show)
+    seconds = every * float(np.diff(rollout.sim_time).mean())
+    if path.suffix == ".gif":
+        _write_gif(frames, path, seconds)
+    else:
+        write_video(frames, path, fps=1.0 / seconds)
+    print(f"filmed {path} ({path.stat().st_size / 1e6:.1f} MB, {rollout.duration:.1f} s, seed {seed})")
+    return path
+
+
+def run_shown(policy: "Policy", env_id: str, *, seed: int, env_kwargs: dict[str, Any]) -> Any:
+    """Run one episode of a policy that has begun it, show how far it is, and return the rollout."""
+    from elastica_gym.viz import run_rollout
+
+    with Bar(f"running the episode of seed {seed}") as bar:
+
+        def act(observations: np.ndarray, batch: Any) -> np.ndarray:
+            bar.show(batch.elapsed[0] / batch.max_episode_steps)
+            return policy(observations, batch)
+
+        return run_rollout(env_id, act, seed=seed, **env_kwargs)
+
+
+def _write_gif(frames: np.ndarray, path: Path, seconds: float) -> None:
+    """Write frames (T, height, width, 3) as an animated GIF that repeats, with so many seconds for each."""
+    from PIL import Image
+
+    pictures = [Image.fromarray(frame) for frame in frames]
+    # one palette for all, or colours flicker
+    palette = Image.fromarray(np.concatenate(frames[:: max(1, len(frames) // 8)])).quantize(COLORS)
+    pictures = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
+    pictures[0].save(
+        path, save_all=True, append_images=pictures[1:], duration=1000.0 * seconds, loop=0, optimize=True
+    )
+
+
+def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs: dict[str, Any]) -> Path | None:
+    """Record the episode with `seed` for rerun; without rerun, say how to get it and return None."""
+    if message := missing_extra("viz"):
+        print(f"no recording: {message}")
+        return None
+    from elastica_gym.viz import write_recording
+
+    path = folder / f"{env_id.rpartition('/')[2]}-seed{seed}.rrd"
+    policy.reset([seed])
+    write_recording(run_shown(policy, env_id, seed=seed, env_kwargs=env_kwargs), path)
+    print(f"recorded {path}")
+    return path

@@ -1,0 +1,224 @@
+"""Hyperparameters from the files in ``configs/``, which rl_zoo3 reads as well."""
+
+import ast
+import importlib
+import inspect
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from ..console.bad_input import BadInputError, choose
+from .allowed_values import ALLOWED, NORMALIZE, policy_allowed, read_mapping, read_value
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+ALGORITHMS = ("ppo", "sac")
+OWN_KEYS = ("n_envs", "n_timesteps", "normalize", "env_kwargs")
+"""Keys of rl_zoo3's format that are not arguments of the algorithm."""
+
+NOT_CONFIGURABLE = {
+    *("self", "env", "seed", "verbose", "tensorboard_log", "_init_setup_model"),
+    *("action_noise", "device", "replay_buffer_class", "rollout_buffer_class"),
+}
+"""Arguments of the algorithms that training sets itself, or that are objects and not values."""
+
+LITERALS = ("normalize", "policy_kwargs", "replay_buffer_kwargs", "rollout_buffer_kwargs")
+"""Keys whose value may be written as a text of Python, such as ``dict(norm_obs=True)``"""
+
+SET_BY_POLICIES = {
+    *("self", "args", "kwargs", "observation_space", "action_space", "lr_schedule"),
+    *("features_extractor_class", "features_extractor_kwargs", "optimizer_class"),
+}
+"""Arguments of policies that the algorithm sets, or that are objects and not values"""
+
+SCHEDULES = ("learning_rate", "clip_range", "clip_range_vf")
+"""Keys whose value may be ``lin_<start>``: falling linearly from start to zero over the budget."""
+
+
+def algorithm_class(algo: str) -> Any:
+    """Return the class of Stable-Baselines3 called `algo`."""
+    import stable_baselines3
+
+    return getattr(stable_baselines3, choose("algorithm", algo, ALGORITHMS).upper())
+
+
+def valid_keys(algo: str) -> set[str]:
+    """Return the keys that a configuration of `algo` may have."""
+    arguments = inspect.signature(algorithm_class(algo).__init__).parameters
+    return set(arguments) - NOT_CONFIGURABLE | set(OWN_KEYS)
+
+
+def load(algo: str, env_id: str, *, config: Path | None = None, overrides: dict[str, Any] | None = None) -> dict:
+    """Return the hyperparameters of `algo` on `env_id` as they are written, with `overrides` put over them.
+
+    Parameters
+    ----------
+    algo, env_id
+        Which file and which of its keys.
+    config
+        Another file of the same format.
+    overrides
+        Values that go before the file's.
+    """
+    path = config or CONFIGS / f"{choose('algorithm', algo, ALGORITHMS)}.yml"
+    try:
+        entries = yaml.safe_load(path.read_text())
+    except OSError as error:
+        raise BadInputError(f"Cannot read the configuration {path}: {error.strerror}") from error
+    except yaml.YAMLError as error:
+        raise BadInputError(f"The configuration {path} is not YAML: {error}") from error
+    # an id may have the module before it that registers it
+    name = env_id.rpartition(":")[2]
+    entry = entries.get(name, entries.get("default")) if isinstance(entries, dict) else None
+    if not isinstance(entry, dict):
+        raise BadInputError(f"The configuration {path} has no entry {env_id!r} and none called 'default'.")
+    return checked(algo, {**entry, **(overrides or {})})
+
+
+def checked(algo: str, values: dict[str, Any]) -> dict[str, Any]:
+    """Return hyperparameters of `algo` with numbers that were written as texts, as YAML reads 1e-3, as numbers.
+
+    Raises
+    ------
+    BadInputError
+        If a key is unknown, or a value is not allowed; the message names both and says what is.
+    """
+    allowed = ALLOWED[choose("algorithm", algo, ALGORITHMS)]
+    kept = {}
+    for key, value in values.items():
+        rule = allowed[choose(f"key of the {algo} configuration", str(key), valid_keys(algo))]
+        if key in LITERALS and isinstance(value, str):
+            # kept as it is written
+            read_value(key, literal(value, name=key), rule)
+            kept[key] = value
+        else:
+            kept[key] = read_value(key, value, rule)
+    _check_parts(algo, kept)
+    return kept
+
+
+def _check_parts(algo: str, values: dict[str, Any]) -> None:
+    """Check what is inside of mappings, and what depends on more than one key."""
+    if "policy" not in values:
+        raise BadInputError(f"The {algo} configuration has no policy, such as MlpPolicy.")
+    policy = policy_class(algo, values["policy"])
+    read_mapping("normalize", _mapping(values, "normalize"), NORMALIZE)
+    known = _arguments_of(policy) - SET_BY_POLICIES
+    read_mapping("policy_kwargs", _mapping(values, "policy_kwargs"), policy_allowed(algo, known))
+    frequency = values.get("train_freq")
+    if isinstance(frequency, (list, tuple)) and frequency[1] == "episode" and values.get("n_envs", 1) != 1:
+        raise BadInputError(f"train_freq must be in steps where n_envs is not 1, got {frequency!r}")
+
+
+def _mapping(values: dict[str, Any], key: str) -> dict[Any, Any]:
+    """Return the mapping that a value is, or that its text stands for."""
+    value = values.get(key)
+    value = literal(value) if isinstance(value, str) else value
+    return value if isinstance(value, dict) else {}
+
+
+def _arguments_of(cls: type) -> set[str]:
+    """Return the names of all arguments that a class and those that it derives from can be made with."""
+    inits = (vars(base)["__init__"] for base in cls.__mro__ if "__init__" in vars(base) and base is not object)
+    return {name for init in inits for name in inspect.signature(init).parameters}
+
+
+def parse_overrides(assignments: list[str]) -> dict[str, Any]:
+    """Turn ``["gamma=0.98", ...]`` into a dictionary; values are read as YAML."""
+    overrides = {}
+    for assignment in assignments:
+        key, separator, value = assignment.partition("=")
+        if not separator:
+            raise BadInputError(f"Expected KEY=VALUE, got {assignment!r}.")
+        try:
+            overrides[key] = yaml.safe_load(value)
+        except yaml.YAMLError:
+            raise BadInputError(f"The value of {key} is not YAML: {value!r}") from None
+    return overrides
+
+
+def timesteps(values: dict[str, Any]) -> int:
+    """Return the environment steps to train for that `values` ask for."""
+    return read_value("n_timesteps", values.get("n_timesteps"), ALLOWED["ppo"]["n_timesteps"])
+
+
+def algorithm_arguments(values: dict[str, Any]) -> dict[str, Any]:
+    """Return the keyword arguments of the algorithm's class that `values`, as written in a file, stand for."""
+    arguments = {key: value for key, value in values.items() if key not in OWN_KEYS}
+    for key in SCHEDULES:
+        if isinstance(arguments.get(key), str):
+            arguments[key] = _schedule(arguments[key])
+    for key in LITERALS:
+        if isinstance(arguments.get(key), str):
+            arguments[key] = literal(arguments[key])
+    if "." in str(arguments.get("policy")):
+        arguments["policy"] = _imported(arguments["policy"])
+    if isinstance(arguments.get("train_freq"), list):
+        arguments["train_freq"] = tuple(arguments["train_freq"])
+    return arguments
+
+
+def policy_class(algo: str, name: str) -> Any:
+    """Return the class of a policy: one of the algorithm's own, or one that is written with its module."""
+    from stable_baselines3.common.policies import ActorCriticPolicy
+    from stable_baselines3.sac.policies import SACPolicy
+
+    if "." not in name:
+        aliases = algorithm_class(algo).policy_aliases
+        return aliases[choose("policy", name, aliases)]
+    found, base = _imported(name), ActorCriticPolicy if algo == "ppo" else SACPolicy
+    if not (isinstance(found, type) and issubclass(found, base)):
+        raise BadInputError(f"policy must be a subclass of {base.__name__} for {algo}, got {name!r}")
+    return found
+
+
+def _imported(name: str) -> Any:
+    """Return what is written with its module, as rl_zoo3 has it."""
+    module, _, attribute = name.rpartition(".")
+    try:
+        return getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError, TypeError, ValueError) as error:
+        raise BadInputError(f"There is no policy {name!r}: {error}") from error
+
+
+def normalize_arguments(values: dict[str, Any]) -> dict[str, Any] | None:
+    """Return the keyword arguments of ``VecNormalize`` that `values` ask for, or None for no normalisation."""
+    normalize = values.get("normalize", False)
+    if isinstance(normalize, str):
+        normalize = literal(normalize)
+    if not normalize:
+        return None
+    return {**(normalize if isinstance(normalize, dict) else {}), "gamma": values.get("gamma", 0.99)}
+
+
+def _schedule(text: str) -> Any:
+    from stable_baselines3.common.utils import LinearSchedule
+
+    return LinearSchedule(float(text.removeprefix("lin_")), 0.0, 1.0)
+
+
+def literal(text: str, *, name: str = "value") -> Any:
+    """Read a Python literal that may also have ``dict(...)`` and names from ``torch.nn`` like ``nn.Tanh``.
+
+    rl_zoo3 evaluates such strings; here nothing is run. Errors call it by `name`.
+    """
+    try:
+        return _value(ast.parse(text.strip(), mode="eval").body)
+    except (RecursionError, SyntaxError, TypeError, ValueError) as error:
+        raise BadInputError(
+            f"{name} cannot be read: only literals, dict(...) and nn.<Module> are allowed, got {text!r}"
+        ) from error
+
+
+def _value(node: ast.expr) -> Any:
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "dict" and not node.args:
+        return {str(keyword.arg): _value(keyword.value) for keyword in node.keywords}
+    if isinstance(node, ast.Dict):
+        return {_value(key): _value(value) for key, value in zip(node.keys, node.values, strict=True) if key}
+    if isinstance(node, ast.List):
+        return [_value(item) for item in node.elts]
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "nn":
+        from torch import nn
+
+        return getattr(nn, choose("torch.nn module", node.attr, dir(nn)))
+    return ast.literal_eval(node)

@@ -1,0 +1,147 @@
+"""Imitation: before it learns from rewards, a network learns to do what the task's scripted policy does.
+
+The data grow by DAgger (Ross, Gordon and Bagnell 2011, "A reduction of imitation learning and structured prediction to
+no-regret online learning", algorithm 3.1): the script says what it would do wherever the network has come by itself.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from ..scripted import scripted_policy
+from .rhythm import Rhythms
+from .seeds import training_seeds
+from .vec_env import BatchVecEnv
+
+ROUNDS = 40
+"""Rounds in which steps are taken and the network is fitted to all of them so far"""
+EPOCHS = 4
+"""Passes over the data in each round"""
+LAST_EPOCHS = 20
+"""Passes over all of them in the end"""
+BATCH_SIZE = 512
+SCRIPTED = 4
+"""In every so many-th environment the script acts, so that the network sees where a script that does well gets"""
+CRITIC = ("value_net", "mlp_extractor.value_net")
+"""Parameters that a policy does not need to act"""
+CRITIC_UPDATES = 6
+"""First updates after imitation that leave the actor as it is"""
+LEARNING_RATES = (1e-3, 1e-4)
+"""Of Adam, at the beginning of each round's passes and at their end"""
+GOING_ON = 0.1
+"""Part of these rates for networks that do the task already, and should not lose it to the first few steps"""
+
+
+def imitate(
+    model: Any,
+    adapter: BatchVecEnv,
+    *,
+    steps: int,
+    show: Callable[[float, dict[str, float]], None],
+    after_round: Callable[[float], bool],
+    goes_on: bool = False,
+) -> None:
+    """Fit the mean actions of a model to those of the scripted policy of its task.
+
+    In the first round the script acts, later it does in some environments and the model in the others. The statistics
+    by which observations are normalised, if they are, become those of all that has been seen. A model that goes on acts
+    from the first round on, keeps its statistics, and learns more slowly.
+
+    Parameters
+    ----------
+    model
+        A PPO model, which explores as always.
+    adapter
+        The environments, which are reset and left where they are.
+    steps
+        Environment steps to take, over all of them, up to whole steps of all in each round. The model counts them.
+    show
+        Called often, with the part that is done and, once there is one, the mean square difference from the script.
+    after_round
+        Called with the part that is done; imitation ends where it returns False.
+    goes_on
+        Whether the model's networks have learned the same task before.
+    """
+    optimizer = torch.optim.Adam(model.policy.parameters())
+    slowness = GOING_ON if goes_on else 1.0
+    per_round = max(1, round(steps / (ROUNDS * adapter.num_envs)))
+    seen, wanted = [], []
+    numbers: dict[str, float] = {}
+    adapter.seed(training_seeds(model.seed, 0, adapter.num_envs))
+    observations = adapter.reset()
+    for number in range(ROUNDS):
+        for step in range(per_round):
+            scripted = np.clip(scripted_policy(adapter.batch.task)(adapter.batch), -1.0, 1.0).astype(np.float32)
+            seen.append(observations)
+            wanted.append(scripted)
+            adapter.step_async(_played(model, observations, scripted) if number or goes_on else scripted)
+            observations, *_ = adapter.step_wait()
+            model.num_timesteps += adapter.num_envs
+            show((number + step / per_round) / ROUNDS, numbers)
+        all_seen = np.concatenate(seen)
+        if not goes_on:
+            _learn_scale(model, all_seen, n_new=per_round * adapter.num_envs)
+        data = [torch.as_tensor(each) for each in (_normalized(model, all_seen), np.concatenate(wanted))]
+        for rate in np.geomspace(*LEARNING_RATES, EPOCHS if number < ROUNDS - 1 else LAST_EPOCHS):
+            optimizer.param_groups[0]["lr"] = slowness * rate
+            numbers = {"mean square difference": _fit(model.policy, optimizer, *data)}
+            show((number + 1.0) / ROUNDS, numbers)
+        if not after_round((number + 1.0) / ROUNDS):
+            return
+
+
+def _played(model: Any, observations: np.ndarray, scripted: np.ndarray) -> np.ndarray:
+    """Return what is done: by the script in some environments, by the model as it is in the others."""
+    own, _ = model.predict(_normalized(model, observations), deterministic=True)
+    return np.where(np.arange(len(own))[:, None] % SCRIPTED == 0, scripted, own)
+
+
+def _learn_scale(model: Any, seen: np.ndarray, n_new: int) -> None:
+    """Take the scale of what is seen from all observations so far, or add the last ones to the statistics there are."""
+    statistics, extractor = model.get_vec_normalize_env(), model.policy.features_extractor
+    if isinstance(extractor, Rhythms):
+        extractor.fit(torch.as_tensor(seen))
+    elif statistics is not None and statistics.norm_obs:
+        statistics.obs_rms.update(seen[-n_new:])
+
+
+@contextmanager
+def critic_alone(policy: Any, first: bool) -> Iterator[None]:
+    """Keep the actor as it is, if asked to: what it can do already would be lost to a critic that knows nothing yet."""
+    actor = [p for name, p in policy.named_parameters() if not name.startswith(CRITIC)] if first else []
+    for parameter in actor:
+        parameter.requires_grad_(False)
+    try:
+        yield
+    finally:
+        for parameter in actor:
+            parameter.requires_grad_(True)
+
+
+def _normalized(model: Any, observations: np.ndarray) -> np.ndarray:
+    statistics = model.get_vec_normalize_env()
+    return observations if statistics is None else statistics.normalize_obs(observations)
+
+
+def _fit(policy: Any, optimizer: torch.optim.Optimizer, observations: Tensor, actions: Tensor) -> float:
+    """Pass once over the data, in random order, and return the mean square difference."""
+    policy.set_training_mode(True)
+    total = 0.0
+    for rows in torch.randperm(len(observations)).split(BATCH_SIZE):
+        mean = policy.get_distribution(observations[rows]).distribution.mean
+        loss = _difference(mean, actions[rows])
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+        total += float(loss.detach()) * len(rows)
+    return total / len(observations)
+
+
+def _difference(mean: Tensor, actions: Tensor) -> Tensor:
+    """Return the mean square difference; more than a muscle can do is as good as all that it can."""
+    is_more = (actions.abs() >= 1.0) & (mean * actions > 1.0)
+    return torch.mean(torch.where(is_more, 0.0, mean - actions) ** 2)

@@ -1,0 +1,463 @@
+"""The training loop: Stable-Baselines3's algorithms, stepped one iteration at a time.
+
+An iteration ends with the update of the networks. Between two iterations nothing is half done, so that is where a run
+is measured, evaluated, saved and stopped; a run resumed from there goes on as if nothing had happened.
+"""
+
+import pickle
+import random
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import numpy as np
+import torch
+from stable_baselines3 import PPO, SAC
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.running_mean_std import RunningMeanStd
+from stable_baselines3.common.vec_env import VecNormalize
+
+from ..console.bad_input import BadInputError
+from ..console.progress import ProgressDisplay
+from . import cards, curves, transfer
+from .checkpoints import checkpoint_folders, last_whole_checkpoint, write_atomically, write_checkpoint
+from .episodes import Episodes
+from .evaluation import evaluate
+from .films import record
+from .hyperparameters import algorithm_arguments, algorithm_class, normalize_arguments
+from .imitation import CRITIC_UPDATES, critic_alone, imitate
+from .policies import TrainedPolicy, load_model, load_normalization, load_run, use_one_thread
+from .run_files import BEST, EVALUATIONS, METRICS, Table, read_table
+from .seeds import training_seeds
+from .vec_env import BatchVecEnv, make_batch_vec_env, observation_names
+
+SAC_STEPS_PER_ITERATION = 512
+"""Environment steps that make an iteration of SAC, which updates its networks every few steps."""
+
+UPDATE_COLUMNS: dict[type, tuple[str, ...]] = {
+    PPO: (),
+    SAC: ("learning_rate", "n_updates", "ent_coef", "actor_loss", "critic_loss", "ent_coef_loss"),
+}
+"""What updates of the networks measure that the first iterations, which may be without any, do not"""
+
+REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
+
+
+class Budget:
+    """How long a run may go on: environment steps, minutes, or what is spent first of both.
+
+    Parameters
+    ----------
+    steps
+        Environment steps, or None for no limit.
+    minutes
+        Wall-clock time of training and its evaluations, or None for no limit.
+    seconds_before
+        Time [s] spent before this process took over.
+    free_steps
+        Environment steps that the budget does not count, those of imitation.
+    """
+
+    def __init__(
+        self, *, steps: int | None, minutes: float | None, seconds_before: float = 0.0, free_steps: int = 0
+    ):
+        self.steps = steps
+        self.minutes = minutes
+        self.free_steps = free_steps
+        self._started = time.monotonic() - seconds_before
+
+    @property
+    def seconds(self) -> float:
+        """Time spent [s]."""
+        return time.monotonic() - self._started
+
+    def fraction(self, steps_done: int, *, seconds_ahead: float = 0.0) -> float:
+        """Return how much of the budget is spent, from 0 to 1, or would be in `seconds_ahead`."""
+        by_steps = 0.0
+        if self.steps is not None:
+            by_steps = (steps_done - self.free_steps) / self.steps if self.steps else 1.0
+        by_time = 0.0 if self.minutes is None else (self.seconds + seconds_ahead) / (60.0 * self.minutes)
+        return min(1.0, max(by_steps, by_time))
+
+
+class Training:
+    """A run from its folder: made anew or taken up from its last whole checkpoint.
+
+    Parameters
+    ----------
+    folder
+        The run's folder, which exists.
+    config
+        What ``config.yml`` says.
+    resume
+        Whether to go on from the folder's last whole checkpoint.
+    """
+
+    def __init__(self, folder: Path, config: dict[str, Any], *, resume: bool):
+        self.folder = folder
+        self.config = config
+        use_one_thread()
+        values = config["hyperparameters"]
+        self.adapter = self._make_environment(n_envs=values.get("n_envs", 1), n_threads=config["threads"])
+        checkpoint = self._find_checkpoint() if resume else None
+        saved: dict[str, Any] = {"seconds": 0.0, "table_sizes": (0, 0), "imitated": 0}
+        self.model = self._new_model() if checkpoint is None else self._load_model(checkpoint)
+        self._known_env: str | None = None
+        if checkpoint is None and config.get("start_from"):
+            self._known_env = self._take_over(config["start_from"])
+        # the model has seeded them with its own seed and those that follow, of which runs would share most
+        self.adapter.seed(training_seeds(config["seed"], 0, self.adapter.num_envs))
+        self.model.set_logger(Logger(folder=None, output_formats=[]))
+        self.episodes = Episodes(
+            longest=self.adapter.batch.max_episode_steps, window=self.model._stats_window_size
+        )
+        if checkpoint is not None:
+            saved = self._load_state(checkpoint)
+        self.metrics = Table(folder / METRICS, size=saved["table_sizes"][0])
+        self.evaluations = Table(folder / EVALUATIONS, size=saved["table_sizes"][1])
+        self._points_passed = 0
+        self._imitated: int = saved["imitated"]
+        self._critic_first = CRITIC_UPDATES * self.model.n_steps * self.adapter.num_envs if config.get("imitate") else 0
+        self._seconds_before: float = saved["seconds"]
+        self._checkpoint_at = 0.0
+        self._stop = False
+
+    # Making, saving and restoring
+
+    def _find_checkpoint(self) -> Path | None:
+        checkpoints = self.folder / "checkpoints"
+        found = last_whole_checkpoint(checkpoints)
+        if found is None and checkpoint_folders(checkpoints):
+            raise BadInputError(f"The run {self.folder} has no whole checkpoint to resume from.")
+        if found is None:
+            print("The run ended before its first checkpoint: it starts from the beginning.")
+        return found
+
+    def _make_environment(self, *, n_envs: int, n_threads: int) -> BatchVecEnv:
+        env_kwargs = self.config["hyperparameters"].get("env_kwargs") or {}
+        try:
+            return make_batch_vec_env(self.config["env"], n_envs=n_envs, n_threads=n_threads, **env_kwargs)
+        except (TypeError, ValueError) as error:
+            raise BadInputError(f"The environment refuses its arguments: {error}") from error
+
+    def _new_model(self) -> Any:
+        values = self.config["hyperparameters"]
+        normalize = normalize_arguments(values)
+        try:
+            env = self.adapter if normalize is None else VecNormalize(self.adapter, **normalize)
+            return algorithm_class(self.config["algo"])(
+                env=env, seed=self.config["seed"], device="cpu", **algorithm_arguments(values)
+            )
+        except (TypeError, ValueError, AssertionError) as error:
+            raise BadInputError(f"Stable-Baselines3 refuses the hyperparameters: {error}") from error
+
+    def _take_over(self, start: str) -> str:
+        """Begin with the networks of another run or a pretrained policy and its statistics, and return its task's id.
+
+        Explores as if new. What is seen here and was not there counts for nothing at first.
+        """
+        other, known, env_id, algo = _networks(start)
+        now = self.adapter.batch.observation_names
+        weights = {name: value for name, value in other.policy.state_dict().items() if name != "log_std"}
+        try:
+            where = transfer.places(observation_names(env_id), now)
+            shapes = {name: value.shape for name, value in self.model.policy.state_dict().items()}
+            weights = transfer.widened(weights, shapes, where)
+            absent, unknown = self.model.policy.load_state_dict(weights, strict=False)
+        except (RuntimeError, ValueError) as error:
+            absent, unknown = [str(error)], []
+        if set(absent) - {"log_std"} or unknown:
+            raise BadInputError(f"The networks of {start}, {algo} on {env_id}, do not fit: "
+                                f"{', '.join([*absent, *unknown])}")  # fmt: skip
+        normalize = self.model.get_vec_normalize_env()
+        if normalize is not None and known is not None:
+            normalize.obs_rms = transfer.statistics(known, len(now), where)
+        return env_id
+
+    def _load_model(self, checkpoint: Path) -> Any:
+        env: Any = self.adapter
+        if normalize_arguments(self.config["hyperparameters"]) is not None:
+            env = load_normalization(checkpoint / "vecnormalize.pkl")
+            env.set_venv(self.adapter)
+        return load_model(checkpoint / "model.zip", self.config["algo"], env=env, force_reset=False)
+
+    def _save_files(self, folder: Path) -> None:
+        self._save_policy(folder)
+        normalize = self.model.get_vec_normalize_env()
+        state = {
+            "environment": self.adapter.get_state(),
+            "discounted_returns": None if normalize is None else normalize.returns,
+            "torch": torch.get_rng_state(),
+            "numpy": np.random.get_state(),
+            "python": random.getstate(),
+            "action_space": self.model.action_space.np_random.bit_generator.state,
+            "imitated": self._imitated,
+            "episodes": self.episodes.get_state(),
+            "seconds": self.budget.seconds,
+            "table_sizes": (self.metrics.size, self.evaluations.size),
+        }
+        (folder / "state.pkl").write_bytes(pickle.dumps(state))
+        if isinstance(self.model, SAC):
+            self._save_replay_buffer(folder / "replay_buffer.npz")
+
+    def _load_state(self, checkpoint: Path) -> dict[str, Any]:
+        state = pickle.loads((checkpoint / "state.pkl").read_bytes())
+        self.adapter.set_state(state["environment"])
+        self.episodes.set_state(state["episodes"])
+        normalize = self.model.get_vec_normalize_env()
+        if normalize is not None:
+            normalize.returns = state["discounted_returns"]
+        if isinstance(self.model, SAC):
+            self._load_replay_buffer(checkpoint / "replay_buffer.npz")
+        # the generators come last, since making a model seeds them
+        torch.set_rng_state(state["torch"])
+        np.random.set_state(state["numpy"])
+        random.setstate(state["python"])
+        self.model.action_space.np_random.bit_generator.state = state["action_space"]
+        return state
+
+    def _save_replay_buffer(self, path: Path) -> None:
+        buffer = self.model.replay_buffer
+        filled = buffer.size()
+        np.savez(path, pos=buffer.pos, full=buffer.full, **{k: getattr(buffer, k)[:filled] for k in REPLAY_ARRAYS})
+
+    def _load_replay_buffer(self, path: Path) -> None:
+        buffer = self.model.replay_buffer
+        with np.load(path) as saved:
+            for name in REPLAY_ARRAYS:
+                getattr(buffer, name)[: len(saved[name])] = saved[name]
+            buffer.pos, buffer.full = int(saved["pos"]), bool(saved["full"])
+
+    # Running
+
+    def run(self) -> bool:
+        """Train until the budget is spent, or until asked to stop, and save. Return whether the budget is spent."""
+        previous = {number: signal.signal(number, self._ask_to_stop) for number in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            with ProgressDisplay() as self.display:
+                self._compile()
+                self.budget = Budget(
+                    steps=self.config["steps"], minutes=self.config["minutes"], seconds_before=self._seconds_before,
+                    free_steps=self._imitated,
+                )  # fmt: skip
+                if self.config.get("imitate") and not self._imitated:
+                    self._imitate()
+                finished = self._loop()
+                self._finish()
+        finally:
+            for number, handler in previous.items():
+                signal.signal(number, handler)
+            self.metrics.close()
+            self.evaluations.close()
+            self.adapter.close()
+        return finished
+
+    def _compile(self) -> None:
+        """Step one environment, so that compiling does not count as training time."""
+        env = self._make_environment(n_envs=1, n_threads=1)
+        env.reset()
+        env.step(np.zeros((1, *env.action_space.shape), np.float32))  # type: ignore[misc]
+        env.close()
+
+    def _imitate(self) -> None:
+        """Learn from the task's script, and evaluate meanwhile."""
+
+        def after_round(part: float) -> bool:
+            self._evaluate_when_due(part)
+            return not self._stop
+
+        imitate(self.model, self.adapter, steps=self.config["imitate"], show=self.display.update,
+                after_round=after_round, goes_on=self._known_env == self.config["env"])  # fmt: skip
+        self._imitated = 0 if self._stop else self.model.num_timesteps
+        self.budget.free_steps = self.model.num_timesteps
+        self._pass_points(self.spent)
+
+    def _loop(self) -> bool:
+        iterate = ITERATIONS[type(self.model)]
+        callback = self._begin()
+        duration = 0.0
+        self._evaluate_when_due(self.spent)
+        while self.budget.fraction(self.model.num_timesteps, seconds_ahead=duration) < 1.0 and not self._stop:
+            started, steps_before = time.monotonic(), self.model.num_timesteps
+            with critic_alone(self.model.policy, steps_before - self._imitated < self._critic_first):
+                iterate(self.model, callback, self.budget)
+            duration = time.monotonic() - started
+            self._measure((self.model.num_timesteps - steps_before) / duration)
+            self._evaluate_when_due(self.spent)
+            if self.budget.seconds - self._checkpoint_at > 60.0 * self.config["checkpoint_minutes"]:
+                self._checkpoint()
+        return not self._stop
+
+    def _begin(self) -> BaseCallback:
+        resumed = self.model.num_timesteps > 0
+        _, callback = self.model._setup_learn(
+            self.config["steps"] or 2**62, callback=self.episodes, reset_num_timesteps=not resumed
+        )
+        self._checkpoint_at = self.budget.seconds
+        if resumed:
+            self._pass_points(self.spent)
+        return callback
+
+    def _ask_to_stop(self, number: int, frame: FrameType | None) -> None:
+        if self._stop:
+            raise KeyboardInterrupt
+        self._stop = True
+        self.display.say("Stopping after this update; interrupt once more to stop at once.")
+
+    def _measure(self, steps_per_second: float) -> None:
+        """Append what this iteration came to to metrics.csv and to the display."""
+        row = {
+            "steps": self.model.num_timesteps,
+            "seconds": self.budget.seconds,
+            "steps_per_second": steps_per_second,
+            "return": self.episodes.mean("r"),
+            "length": self.episodes.mean("l"),
+            "distance": self.episodes.mean("distance"),
+            "success": self.episodes.mean("success"),
+            **{term: self.episodes.mean(term) for term in self.adapter.term_keys},
+            **dict.fromkeys(UPDATE_COLUMNS[type(self.model)]),
+            **{key.removeprefix("train/"): _plain(v) for key, v in self.model.logger.name_to_value.items()},
+        }
+        self.model.logger.dump(self.model.num_timesteps)
+        self.metrics.append(row)
+        shown = ("steps", "steps_per_second", "return", "distance", "success")
+        self.display.update(self.spent, {key.replace("steps_per_second", "steps/s"): row[key] for key in shown})
+
+    @property
+    def spent(self) -> float:
+        """The part of the budget that is spent, which imitation does not count for unless in minutes."""
+        return self.budget.fraction(self.model.num_timesteps)
+
+    def _evaluate_when_due(self, part: float) -> None:
+        """Evaluate at the start and whenever another equal part is done, of the budget or of imitation."""
+        points = self.config["evaluations"]
+        if points and part * points >= self._points_passed:
+            self._evaluate()
+            self._pass_points(part)
+
+    def _pass_points(self, part: float) -> None:
+        self._points_passed = int(part * self.config["evaluations"]) + 1
+
+    def _evaluate(self) -> None:
+        result = evaluate(
+            self._policy(),
+            self.config["env"],
+            episodes=self.config["evaluation_episodes"],
+            seed=self.config["evaluation_seed"],
+            n_threads=self.config["threads"],
+            env_kwargs=self.config["hyperparameters"].get("env_kwargs"),
+        ).summary()
+        row = {
+            "steps": self.model.num_timesteps,
+            "seconds": self.budget.seconds,
+            "return": result["return_mean"],
+            "return_ci95": result["return_ci95"],
+            "distance": result["distance_mean"],
+            "distance_ci95": result["distance_ci95"],
+            "success": result["success_rate"],
+            "length": result["length_mean"],
+            "divergences": result["divergences"],
+            **{f"reward_{term}": mean for term, mean in result["terms"].items()},
+        }
+        if result["return_mean"] > read_table(self.folder / EVALUATIONS).get("return", np.array([-np.inf])).max():
+            self._save_best()
+        self.evaluations.append(row)
+        self.display.say(
+            f"evaluation at {self.model.num_timesteps:,} steps: return {row['return']:.3f} ± {row['return_ci95']:.3f}, "
+            f"distance {row['distance']:.3f} m, success {row['success']:.0%}"
+        )
+
+    def _policy(self) -> TrainedPolicy:
+        return TrainedPolicy(self.model, self.model.get_vec_normalize_env())
+
+    def _checkpoint(self) -> None:
+        write_checkpoint(self.folder / "checkpoints", self.model.num_timesteps, self._save_files)
+        self._checkpoint_at = self.budget.seconds
+
+    def _finish(self) -> None:
+        """Save the state for a later ``--resume``, the model for use, the curve and recordings of the best model."""
+        # a run that is stopped while it imitates begins anew
+        if self._imitated or not self.config.get("imitate"):
+            self._checkpoint()
+        self._save_policy(self.folder)
+        figure = curves.plot_run(self.folder)
+        write_atomically(self.folder / "learning_curve.png", lambda path: curves.save(figure, path))
+        if not self._stop:
+            self._record()
+
+    def _save_best(self) -> None:
+        """Keep the policy as it is now in a folder that can be used like a run."""
+        folder = self.folder / BEST
+        folder.mkdir(exist_ok=True)
+        self._save_policy(folder)
+        config = (self.folder / "config.yml").read_bytes()
+        write_atomically(folder / "config.yml", lambda path: path.write_bytes(config))
+
+    def _save_policy(self, folder: Path) -> None:
+        write_atomically(folder / "model.zip", self.model.save)
+        normalize = self.model.get_vec_normalize_env()
+        if normalize is not None:
+            write_atomically(folder / "vecnormalize.pkl", normalize.save)
+
+    def _record(self) -> None:
+        folder = self.folder / "recordings"
+        folder.mkdir(exist_ok=True)
+        seed, env_kwargs = self.config["evaluation_seed"], self.config["hyperparameters"].get("env_kwargs") or {}
+        best = self.folder / BEST
+        policy = load_run(best)[0] if best.exists() else self._policy()
+        for i in range(self.config["recordings"]):
+            record(policy, self.config["env"], seed=seed + i, folder=folder, env_kwargs=env_kwargs)
+
+    @property
+    def last_checkpoint(self) -> Path | None:
+        """The newest checkpoint, if there is one."""
+        folders = checkpoint_folders(self.folder / "checkpoints")
+        return folders[-1] if folders else None
+
+
+def iterate_ppo(model: PPO, callback: BaseCallback, budget: Budget) -> None:
+    """Collect ``n_steps`` steps of every environment and update the networks from them."""
+    model.collect_rollouts(model.env, callback, model.rollout_buffer, n_rollout_steps=model.n_steps)  # type: ignore[arg-type]
+    model._current_progress_remaining = 1.0 - budget.fraction(model.num_timesteps)
+    model.train()
+
+
+def iterate_sac(model: SAC, callback: BaseCallback, budget: Budget) -> None:
+    """Alternate ``train_freq`` steps and their updates of the networks, for `SAC_STEPS_PER_ITERATION` steps."""
+    end = model.num_timesteps + SAC_STEPS_PER_ITERATION
+    while model.num_timesteps < end:
+        collected = model.collect_rollouts(
+            model.env,  # type: ignore[arg-type]
+            callback,
+            train_freq=model.train_freq,  # type: ignore[arg-type]
+            replay_buffer=model.replay_buffer,  # type: ignore[arg-type]
+            action_noise=model.action_noise,
+            learning_starts=model.learning_starts,
+            log_interval=None,
+        )
+        model._current_progress_remaining = 1.0 - budget.fraction(model.num_timesteps)
+        updates = model.gradient_steps if model.gradient_steps >= 0 else collected.episode_timesteps
+        if model.num_timesteps > model.learning_starts and updates > 0:
+            model.train(gradient_steps=updates, batch_size=model.batch_size)
+
+
+ITERATIONS: dict[type, Callable[[Any, BaseCallback, Budget], None]] = {PPO: iterate_ppo, SAC: iterate_sac}
+
+
+def _plain(value: Any) -> int | float:
+    return value if isinstance(value, int) else float(value)
+
+
+def _networks(start: str) -> tuple[Any, RunningMeanStd | None, str, str]:
+    """Return the model of a pretrained policy or of a run, its statistics, the id of its environment, its algorithm."""
+    if start in cards.names():
+        policy, card = cards.load_pretrained(start)
+        known = None if policy.normalization is None else transfer.counted(policy.normalization, card["steps"])
+        return policy.model, known, card["environment"], card["algorithm"]
+    policy, config = load_run(Path(start))
+    known = None if policy.normalization is None else policy.normalization.obs_rms
+    return policy.model, known, config["env"], config["algo"]

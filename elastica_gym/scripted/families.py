@@ -1,0 +1,228 @@
+"""Gaits that a few numbers describe, to be searched and played: waves for the snake, strokes for the octopus."""
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from elastica_gym.bodies.body import Body
+from elastica_gym.engine import Wave
+
+from ..console.bad_input import BadInputError, choose
+from .gaits import (
+    OCTOPUS_FUNCTIONS,
+    SEED_COEFFICIENTS,
+    SEED_PERIOD,
+    TURNING,
+    play_stroke,
+    play_wave,
+    turn_activations,
+    wave_activations,
+)
+
+Play = Callable[[Any, np.ndarray], np.ndarray]
+"""From a batch and its observations, (B, d), the actions, (B, 42)"""
+
+
+@dataclasses.dataclass(frozen=True)
+class Parameter:
+    """A number that a search varies: where it starts, how far it looks at first, and between which bounds."""
+
+    name: str
+    start: float
+    spread: float
+    low: float
+    high: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Gait:
+    """A family of gaits.
+
+    Attributes
+    ----------
+    name : str
+    body : str
+        The animal that has it.
+    parameters : tuple of Parameter
+    prepare : callable
+        From a body and the values of the parameters of K gaits, (K, P), what plays them; the first of K equal parts of
+        the batch plays the first.
+    objective : str
+        What a search makes large: distance, or return, the sum of the task's own rewards.
+    starts : int
+        On how many starts a search tries each candidate.
+    """
+
+    name: str
+    body: str
+    parameters: tuple[Parameter, ...]
+    prepare: Callable[[Body, np.ndarray], Play]
+    objective: str
+    starts: int
+
+
+class GaitPolicy:
+    """Gaits, played through the animal's muscles.
+
+    Parameters
+    ----------
+    gait
+        Their family.
+    values
+        Values of its parameters, (P,) for all environments, or (K, P) for K equal parts of the batch.
+    """
+
+    def __init__(self, gait: Gait, values: np.ndarray):
+        self.gait = gait
+        self.values = np.atleast_2d(values)
+
+    def reset(self, seeds: Sequence[int]) -> None:
+        """Nothing to begin but the tables: a gait looks at the clock of its environment."""
+        self._play: Play | None = None
+
+    def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
+        """Return the actions of the gaits."""
+        if self._play is None:
+            check_fits(self.gait, batch.body)
+            self._play = self.gait.prepare(batch.body, self.values)
+        return self._play(batch, observations).astype(np.float32)
+
+
+def check_fits(gait: Gait, body: Body) -> None:
+    """Raise ``BadInputError`` if another animal has this gait."""
+    if gait.body != body.name:
+        raise BadInputError(f"The gait {gait.name!r} is of the {gait.body}, not of the {body.name}.")
+
+
+def angle_to_goal(observations: np.ndarray, batch: Any) -> np.ndarray:
+    """Return the direction to the goal, from the heading and positive to the right [rad], (B,)."""
+    columns = [batch.observation_names.index(f"goal/{axis}") for axis in ("forward", "right")]
+    forward, right = observations[:, columns].astype(np.float64).T
+    return np.arctan2(right, forward)
+
+
+def _rows(values: np.ndarray, batch: Any) -> np.ndarray:
+    """Repeat what each gait has for all the environments that play it, (K, ...) to (B, ...)."""
+    return np.repeat(values, batch.num_envs // len(values), axis=0)
+
+
+COUPLES = tuple(Parameter(f"coefficient_{i}", b, 4e-3, -0.03, 0.03) for i, b in enumerate(SEED_COEFFICIENTS))
+"""Spline coefficients [N m], up to five times what the muscles can do: where these fall short, they do what they can"""
+WAVE_LENGTH = Parameter("wave_length", 1.0, 0.5, 0.2, 10.0)
+"""In body lengths"""
+
+
+def _wave(body: Body, coefficients: np.ndarray, wave_length: float, period: float) -> np.ndarray:
+    wave = Wave(coefficients=tuple(coefficients), period=period, wave_number=2.0 * np.pi / wave_length)
+    return wave_activations(body, wave)
+
+
+def _prepare_wave(body: Body, values: np.ndarray) -> Play:
+    tables = np.stack([_wave(body, row[:6], row[6], SEED_PERIOD) for row in values])
+    return lambda batch, observations: play_wave(batch, tables, np.full(batch.num_envs, SEED_PERIOD))
+
+
+def _prepare_steered_wave(body: Body, values: np.ndarray) -> Play:
+    tables, turn = np.stack([_wave(body, row[:6], row[6], row[7]) for row in values]), turn_activations(body)
+
+    def play(batch: Any, observations: np.ndarray) -> np.ndarray:
+        _, period, couple = _rows(values[:, 6:], batch).T
+        bend = couple * np.clip(angle_to_goal(observations, batch), -1.0, 1.0)
+        return play_wave(batch, tables, period, bend[:, None] * turn)
+
+    return play
+
+
+STROKE_SHAPE = (3, 3, len(OCTOPUS_FUNCTIONS))
+"""Always, forward and right; offset, sine and cosine; functions"""
+
+
+def _prepare_stroke(body: Body, values: np.ndarray) -> Play:
+    def play(batch: Any, observations: np.ndarray) -> np.ndarray:
+        rows, angle = _rows(values, batch), angle_to_goal(observations, batch)
+        always, forward, right = np.moveaxis(rows[:, 1:].reshape(-1, *STROKE_SHAPE), 1, 0)
+        ahead, aside = np.cos(angle)[:, None, None], np.sin(angle)[:, None, None]
+        # the arms are each other's mirror images: what is ahead of one is behind the other
+        tables = [always + aside * right + side * ahead * forward for side in (1.0, -1.0)]
+        return play_stroke(batch, rows[:, 0], tables)
+
+    return play
+
+
+WAVE = Gait("wave", "snake", (*COUPLES, WAVE_LENGTH), _prepare_wave, "distance", 1)
+"""The snake's published gait: six coefficients of a spline and a wave length; its period is the published one."""
+
+STEERED_WAVE = Gait(
+    "steered_wave",
+    "snake",
+    (*COUPLES, WAVE_LENGTH, Parameter("period", 1.0, 0.2, 0.3, 4.0), Parameter("turn", TURNING, 5e-4, 0.0, 0.01)),
+    _prepare_steered_wave,
+    "return",
+    8,
+)
+"""Such a wave with a period of its own [s], and a bend towards the goal of so much at one radian [N m]."""
+
+STROKE = Gait(
+    "stroke",
+    "octopus",
+    (
+        Parameter("period", 0.8, 0.2, 0.3, 3.0),
+        *(
+            Parameter(f"{direction}_{part}_{function}", 0.0, 0.3, -3.0, 3.0)
+            for direction in ("always", "forward", "right")
+            for part in ("offset", "sine", "cosine")
+            for function in OCTOPUS_FUNCTIONS
+        ),
+    ),
+    _prepare_stroke,
+    "return",
+    8,
+)
+"""A period [s], and activations that depend on the direction to the goal; the arms are each other's mirror images."""
+
+GAITS = {gait.name: gait for gait in (WAVE, STEERED_WAVE, STROKE)}
+
+
+def gait_for(env_id: str, body: str) -> Gait:
+    """Return the gait that is searched on an environment: the published wave where the way is straight ahead."""
+    if body == STROKE.body:
+        return STROKE
+    return WAVE if "SnakeForward" in env_id else STEERED_WAVE
+
+
+def describe(gait: Gait, values: np.ndarray) -> dict[str, Any]:
+    """Return a gait as what a YAML file has; `load_gait` reads it."""
+    names = (parameter.name for parameter in gait.parameters)
+    return {"gait": gait.name, "parameters": dict(zip(names, map(float, values), strict=True))}
+
+
+def load_gait(path: Path) -> tuple[GaitPolicy, str]:
+    """Read the gait that a search wrote.
+
+    Returns
+    -------
+    policy
+        The gait.
+    env_id
+        The environment that it was searched on.
+    """
+    try:
+        saved = yaml.safe_load(path.read_text())
+    except OSError as error:
+        raise BadInputError(f"Cannot read the gait {path}: {error.strerror}.") from error
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise BadInputError(f"The gait {path} is not YAML: {error}") from error
+    absent = {"env", "gait", "parameters"} - set(saved if isinstance(saved, dict) else ())
+    if absent:
+        raise BadInputError(f"{path} is not a gait: no {', '.join(sorted(absent))}.")
+    gait = GAITS[choose("gait", saved["gait"], GAITS)]
+    names = [parameter.name for parameter in gait.parameters]
+    try:
+        values = np.array([float(saved["parameters"][name]) for name in names])
+    except (KeyError, TypeError, ValueError) as error:
+        raise BadInputError(f"{path}: the gait {gait.name!r} needs a number for each of {', '.join(names)}.") from error
+    return GaitPolicy(gait, values), saved["env"]

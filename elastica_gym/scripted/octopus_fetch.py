@@ -1,0 +1,267 @@
+"""A scripted octopus: it walks to its object, turns an arm's inside to it, bends the arm around it and carries it home.
+
+It goes by what is observed, the time, and whether the object is grabbed. Bending at full strength, an arm takes
+hold of what stands in its bend, within some 15 cm of its base and on the right of it, the side away from the other
+arm. Places are as seen from the head: ahead and to the right [m]. What holds for the
+second arm, which points ahead, holds for the first one in the mirror: with the same activations, for those that twist
+are zero.
+"""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..bodies.muscles import N_ACTIVATIONS, N_FUNCTIONS
+from ..bodies.octopus import BASE_RADIUS, OBJECT_LENGTH, OBJECT_RADIUS
+from ..engine.model import Array, Index
+from ..envs.handling import now
+from ..envs.task import Mask
+from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
+
+if TYPE_CHECKING:
+    from ..envs.batch import BatchEnv
+
+NODES, TOUCH, THING, AXIS = slice(0, 33), slice(137, 148), slice(148, 151), slice(151, 154)
+VELOCITIES, LEVELS, GOAL, HOME = slice(33, 66), slice(161, 203), slice(206, 208), slice(208, 210)
+"""Where observations have what the script sees, see `elastica_gym.envs.tasks.octopus_fetch`"""
+HEAD_NODE = 5
+"""Which of the nodes seen is the head's centre"""
+STROKING = np.array(OCTOPUS_FUNCTIONS)
+"""The first arm's activations that a stroke plays"""
+BENDING = np.arange(N_FUNCTIONS)
+"""The first arm's activations that bend it sideways"""
+LIFTING = np.array([14, 15, 16])
+"""Its activations of the first three functions that lift it"""
+STEERING = 0.5
+"""Angle off course at which one arm rests, and the other turns the animal [rad]"""
+LEAST = -0.5
+"""What an arm does of the stroke, at least: the reverse of half of it"""
+CLOSE = (0.28, 0.3)
+"""Distance from the head below which it turns rather than walks: where the object is sideways, and elsewhere [m]"""
+BEHIND = -0.12
+"""How far the object may be to the left for that [m]"""
+BOUT = (3, 5)
+"""Near the object, how many strokes it turns at a time, and with the rest after it, in which it looks"""
+NEAR = 0.13
+"""Gap between the object and an arm's inner half below which it does so [m]"""
+UNSTROKED = slice(3, None)
+"""Of the activations that bend an arm sideways, those that no stroke plays"""
+BENT = 0.05
+"""Their mean from which on an arm is bent as a whole"""
+LEAST_BEND = 0.1
+"""Activation with which it begins"""
+STILL = (0.1, 0.1)
+"""Largest activation and speed of a node at which it lies still [1, m/s]"""
+BEND = ((0.18, 0.345), -0.04, 0.07)
+"""Where an arm that lies still begins to bend: how far ahead, at least how far to the right, and how near to its inner
+half [m]"""
+REACH = ((0.1, 0.4), (-0.15, 0.2))
+"""Where it goes on bending: how far ahead and to the right [m]"""
+RAMP = 0.04
+"""By how much the activation that bends it is ahead of what the muscles have reached: with more, it fells what it
+should hold"""
+LEANING = 0.05
+"""Tilt of the object above which the arm that bends around it yields until it stands again [rad]"""
+EMPTY = (0.9, 1)
+"""Activation from which on an arm has missed, and lets go, where no more parts than this touch the object"""
+
+CARRYING = {
+    "ahead": ((0.41, 0.16), 0.25, (
+        (1.56, 0.67, -0.66, -0.76, 0.98, 1.83, 0.44, -3.43, -1.56),
+        (1.85, 1.95, -0.02, -1.18, -2.22, -1.44, 1.38, -1.8, -0.22),
+        (-1.72, 1.12, -1.87, 1.27, -2.6, 0.0, -0.51, 0.95, -0.73),
+    )),
+    "right": ((-0.05, 0.49), 0.25, (
+        (1.14, 0.32, -1.12, -0.67, 0.95, 3.2, -0.05, -3.46, -1.86),
+        (1.81, 1.3, -0.58, -0.85, -2.76, -1.94, 1.45, -2.27, 0.02),
+        (-0.67, 0.78, -0.54, 0.74, -2.8, 0.01, -0.79, 1.3, -1.7),
+    )),
+}  # fmt: skip
+"""How it carries an object in the second arm where it does not hurry: the way that the head makes in 4 s [m], the
+period [s], and offset, sine and cosine of the free arm's activations of a stroke and of the three that lift the holding
+arm. Found by CMA-ES, 24 generations of 12 trials in each direction, on the way made while the object stays wrapped"""
+
+
+class Gait(NamedTuple):
+    """A gait that steers, with which the octopus carries an object in its second arm."""
+
+    course: float
+    """Where it goes: angle to the right of straight ahead [rad]"""
+    width: float
+    """How far off its course it is played [rad]"""
+    period: float
+    """[s]"""
+    table: tuple[tuple[float, ...], ...]
+    """Offset, sine and cosine of the activations, as in `CARRYING`"""
+    steering: tuple[float, ...]
+    """What is added to them per angle from the course to the way [1/rad], of up to 1 rad"""
+
+
+HOMEWARD = Gait(-2.25, 2.0, 0.272, (
+    (1.09, 1.26, -0.93, -0.99, 1.01, -0.04, 0.92, -1.55, -1.31),
+    (-1.43, 3.46, 0.43, -1.73, -2.12, -2.95, 1.02, -0.33, 0.49),
+    (-2.34, 0.84, -0.5, 0.1, -2.02, 1.34, 0.11, 0.34, 0.1),
+), (-0.35, 0.09, -0.55, -0.09, -0.03, -0.62, -0.21, -0.27, 0.24))  # fmt: skip
+"""How it hurries home, which is mostly where it came from: to the left and somewhat behind. It is more than twice as
+fast as the others. Found by `scripts/search_carrying.py`, by CMA-ES on how soon the object is home; the course was then
+set by hand to what the gait makes near home"""
+
+
+class Sight(NamedTuple):
+    """What the script goes by, told from the observations of B octopuses with an object."""
+
+    ahead: Array
+    """How far the object's base is ahead of the head [m], (B,)"""
+    right: Array
+    """And to its right [m], (B,)"""
+    gap: Array
+    """Gap between the object and the inner half of either arm, as the nodes between have it [m], (B,)"""
+    touched: Index
+    """How many parts of the body touch the object, (B,) int64"""
+    levels: Array
+    """Activations that the muscles have reached, (B, 42)"""
+    tilt: Array
+    """Angle of the object's axis from upright [rad], (B,)"""
+    speed: Array
+    """Of the fastest node [m/s], (B,)"""
+    goal: Array
+    """Way to carry the object, ahead and to the right [m], (B, 2): where to go, as far as it is home"""
+
+
+def see(observations: NDArray[np.float32]) -> Sight:
+    """Return what the script goes by, from observations (B, 210) of a task with an object."""
+    o: Array = observations.astype(np.float64)
+    # of a body of 1 m
+    base = o[:, THING] - 0.5 * OBJECT_LENGTH * o[:, AXIS]
+    places = o[:, NODES].reshape(len(o), -1, 3)
+    from_head = places - places[:, [HEAD_NODE]]
+    speeds = np.linalg.norm(o[:, VELOCITIES].reshape(len(o), -1, 3), axis=2)
+    return Sight(
+        ahead=base[:, 0], right=base[:, 2], gap=_gap(from_head, base), touched=np.sum(o[:, TOUCH] > 0.0, axis=1),
+        levels=o[:, LEVELS], tilt=np.arccos(np.clip(o[:, AXIS][:, 1], -1.0, 1.0)), speed=speeds.max(axis=1),
+        goal=o[:, GOAL] * np.linalg.norm(o[:, HOME], axis=1, keepdims=True),
+    )  # fmt: skip
+
+
+def _gap(nodes: Array, base: Array) -> Array:
+    """Return the horizontal gap between an object and the inner halves of arms through nodes (B, 11, 3), (B,)."""
+    plane, foot = nodes[..., [0, 2]], base[:, None, [0, 2]]
+    gaps = []
+    for inner in (slice(2, 5), slice(6, 9)):
+        begin, end = plane[:, inner][:, :-1], plane[:, inner][:, 1:]
+        along, way = end - begin, foot - begin
+        part = np.clip((along * way).sum(axis=2) / (along * along).sum(axis=2), 0.0, 1.0)
+        gaps.append(np.linalg.norm(way - part[..., None] * along, axis=2).min(axis=1))
+    return np.minimum(*gaps) - OBJECT_RADIUS - BASE_RADIUS
+
+
+def fetch(env: "BatchEnv") -> Array:
+    """Return the actions of the script in a task that follows how the object is handled, (B, 42)."""
+    handled = now(env.situation())
+    time = env.elapsed.astype(np.float64) * env.control_dt
+    return act(see(env.observations), time, handled.grabbed == 1.0)
+
+
+def act(sight: Sight, time: Array, grabbed: Mask) -> Array:
+    """Return the actions of the script, (B, 42).
+
+    Parameters
+    ----------
+    sight : Sight
+    time : Array
+        Since the start of the episode [s], (B,).
+    grabbed : Mask
+        Whether an arm has grabbed the object, (B,) bool.
+    """
+    ahead, right = sight.ahead, sight.right
+    bearing = np.arctan2(right, ahead)
+    sideways = np.abs(bearing - 0.5 * np.pi) < 0.4
+    # what is ahead is for the second arm, what is behind for the first
+    arm = np.where(ahead >= 0.0, 1, 0)
+    is_close = np.sqrt(ahead * ahead + right * right) < np.where(sideways, *CLOSE)
+    actions = walk(time, bearing)
+    for chosen, play in (
+        (is_close & (right > BEHIND), turn(sight, time, arm)),
+        (is_close & (right > BEHIND) & _is_in_the_bend(sight, arm), bend(sight, arm)),
+        (grabbed, carry(sight.goal, time, arm)),
+    ):
+        actions[chosen] = play[chosen]
+    return actions
+
+
+def _is_in_the_bend(sight: Sight, arm: Index) -> Mask:
+    """Return whether an arm has the object where it should begin or go on to bend, (B,)."""
+    ahead, right = np.abs(sight.ahead), sight.right
+    bent = np.take_along_axis(sight.levels, BENDING + arm[:, None] * N_FUNCTIONS, axis=1)
+    level = bent[:, UNSTROKED].mean(axis=1)
+    (nearest, furthest), left, gap = BEND
+    begins = (ahead > nearest) & (ahead < furthest) & (right > left) & (sight.gap < gap)
+    most, fastest = STILL
+    begins &= (np.abs(sight.levels).max(axis=1) < most) & (sight.speed < fastest)
+    (nearest, furthest), (left, rightmost) = REACH
+    goes_on = (ahead > nearest) & (ahead < furthest) & (right > left) & (right < rightmost)
+    # bent as a whole, not by a stroke
+    goes_on &= level > BENT
+    goes_on &= (level < EMPTY[0]) | (sight.touched > EMPTY[1])
+    return begins | goes_on
+
+
+def walk(time: Array, bearing: Array) -> Array:
+    """Return the actions of a walk to the right that turns towards a bearing from the head's axis [rad], (B, 42)."""
+    off = (bearing + 0.5 * np.pi) % (2.0 * np.pi) - np.pi
+    first, second = (np.clip(1.0 - np.maximum(sign * off, 0.0) / STEERING, LEAST, 1.0) for sign in (-1.0, 1.0))
+    return _play(time, first, second)
+
+
+def turn(sight: Sight, time: Array, arm: Index) -> Array:
+    """Return the actions of a turn that brings an arm, which rests, to the right, near the object in bouts, (B, 42)."""
+    strokes, bout = BOUT
+    strength: Array = ((sight.gap > NEAR) | (time / OCTOPUS_STROKES["right"][0] % bout < strokes)).astype(np.float64)
+    return _play(time, strength * arm, strength * (1.0 - arm))
+
+
+def _play(time: Array, first: Array, second: Array) -> Array:
+    """Return the actions of the stroke to the right, each arm's times a factor (B,), (B, 42)."""
+    period, table = OCTOPUS_STROKES["right"]
+    level = np.clip(_wave(time, np.full(len(time), period), np.array(table)), -1.0, 1.0)
+    actions = np.zeros((len(time), N_ACTIVATIONS))
+    actions[:, STROKING], actions[:, STROKING + N_FUNCTIONS] = first[:, None] * level, second[:, None] * level
+    return actions
+
+
+def _wave(time: Array, period: Array, table: Array) -> Array:
+    """Return offset + sine + cosine of the clock, from rows of a table (3, n) or (B, 3, n), (B, n)."""
+    phase = (2.0 * np.pi * time / period)[:, None]
+    return table[..., 0, :] + table[..., 1, :] * np.sin(phase) + table[..., 2, :] * np.cos(phase)
+
+
+def bend(sight: Sight, arm: Index) -> Array:
+    """Return the actions that bend an arm more and more, but less where what it holds leans, (B, 42)."""
+    columns = BENDING + arm[:, None] * N_FUNCTIONS
+    level = np.take_along_axis(sight.levels, columns, axis=1).mean(axis=1)
+    level = np.maximum(level + np.where(sight.tilt > LEANING, -RAMP, RAMP), LEAST_BEND)
+    actions = np.zeros((len(arm), N_ACTIVATIONS))
+    np.put_along_axis(actions, columns, np.minimum(level, 1.0)[:, None], axis=1)
+    return actions
+
+
+def carry(way: Array, time: Array, arm: Index, homeward: Gait = HOMEWARD) -> Array:
+    """Return the actions that carry the object some way (B, 2) [m] in an arm, (B, 42)."""
+    # in the mirror, for the first arm
+    ahead, right = np.where(arm == 1, 1.0, -1.0) * way[:, 0], way[:, 1]
+    ways, periods, tables = (np.array(column) for column in zip(*CARRYING.values(), strict=True))
+    along = ahead[:, None] * ways[:, 0] + right[:, None] * ways[:, 1]
+    astray = np.abs(ahead[:, None] * ways[:, 1] - right[:, None] * ways[:, 0])
+    best = (along - 0.5 * astray).argmax(axis=1)
+    off = (np.arctan2(right, ahead) - homeward.course + np.pi) % (2.0 * np.pi) - np.pi
+    hurried = _wave(time, np.full(len(time), homeward.period), np.array(homeward.table))
+    hurried += np.clip(off, -1.0, 1.0)[:, None] * np.array(homeward.steering)
+    is_hurried = (np.abs(off) < homeward.width)[:, None]
+    level = np.clip(np.where(is_hurried, hurried, _wave(time, periods[best], tables[best])), -1.0, 1.0)
+    actions = np.zeros((len(arm), N_ACTIVATIONS))
+    own, other = arm[:, None] * N_FUNCTIONS, (1 - arm)[:, None] * N_FUNCTIONS
+    np.put_along_axis(actions, BENDING + own, 1.0, axis=1)
+    np.put_along_axis(actions, STROKING + other, level[:, :6], axis=1)
+    np.put_along_axis(actions, LIFTING + own, level[:, 6:], axis=1)
+    return actions

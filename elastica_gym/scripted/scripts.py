@@ -1,0 +1,84 @@
+"""A script for each task: from a batch of environments, whose whole state it may look at, the actions."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..engine.model import Array
+from ..envs.batch import BatchEnv
+from ..envs.goal import GoalTask
+from ..envs.handling import see_object
+from ..envs.task import Task
+from ..envs.tasks import octopus_crawl as crawl
+from ..envs.tasks import snake_forward, snake_reach, snake_steer
+from .gaits import octopus_crawl, octopus_reach, snake_crawl
+from .octopus_fetch import fetch
+
+Script = Callable[[BatchEnv], Array]
+"""From a batch of B environments, the actions, (B, A)"""
+
+
+def forward(env: BatchEnv) -> Array:
+    """Return the actions of a crawl that turns towards the initial heading, (B, 42)."""
+    return snake_crawl(env, snake_forward.direction_of_goal(env.situation()))
+
+
+def reach(env: BatchEnv) -> Array:
+    """Return the actions of a crawl that turns towards the target, (B, 42)."""
+    return snake_crawl(env, snake_reach.direction_of_goal(env.situation()))
+
+
+def steer(env: BatchEnv) -> Array:
+    """Return the actions of a crawl in the commanded direction, weaker where it is too fast, (B, 42)."""
+    forward, right, speed, along, across = snake_steer.see_goal(env.situation()).T
+    lag = speed - (along * forward + across * right)
+    strength = np.clip(speed / snake_steer.SPEEDS[1] + 10.0 * lag, 0.0, 1.0)
+    return strength[:, None] * snake_crawl(env, np.arctan2(right, forward))
+
+
+def crawl_to_the_commanded_side(env: BatchEnv) -> Array:
+    """Return the actions of the octopus' crawl in the commanded direction, (B, 42)."""
+    seen = crawl.see_goal(env.situation())
+    return octopus_crawl(env, np.arctan2(seen[:, 1], seen[:, 0]))
+
+
+def reach_for_the_object(env: BatchEnv) -> Array:
+    """Return the actions of a script that throws an arm at the object, or crawls to it, (B, 42)."""
+    seen = see_object(env.situation())
+    return octopus_reach(env, np.arctan2(seen[:, 1], seen[:, 0]))
+
+
+_scripts: dict[str, Script] = {
+    "SnakeForward": forward, "SnakeReach": reach, "SnakeSteer": steer, "OctopusCrawl": crawl_to_the_commanded_side,
+    "OctopusReach": reach_for_the_object,
+    **dict.fromkeys(("OctopusMove", "OctopusGrab", "OctopusReturn", "OctopusFetch"), fetch),
+}  # fmt: skip
+"""By the name of the task"""
+
+
+def register_script(task_name: str, script: Script) -> None:
+    """Give a task a script, which ``agents`` then plays as the policy ``scripted`` and imitates.
+
+    Parameters
+    ----------
+    task_name : str
+        Name of the `Task`; the script also serves the goal-conditioned form of it.
+    script : callable
+        From a `BatchEnv` of B environments, the actions, (B, A).
+    """
+    _scripts[task_name] = script
+
+
+def scripted_policy(task: Task) -> Script:
+    """Return the script of a task.
+
+    Raises
+    ------
+    ValueError
+        If it has none.
+    """
+    name = task.base if isinstance(task, GoalTask) else task.name
+    if name not in _scripts:
+        raise ValueError(f"{name} has no script; elastica_gym.scripted.register_script gives it one. "
+                         f"Tasks that have one: {', '.join(_scripts)}")  # fmt: skip
+    return _scripts[name]
