@@ -176,7 +176,7 @@ class RerunCallBack(CallBackBaseClass):
 
     def __init__(self, step_skip: int, path: str | Path) -> None:
         # imported here: the physics does without pictures
-        from ..viz.systems import SystemRecorder
+        from .recording import SystemRecorder
 
         if step_skip < 1:
             raise ValueError(f"step_skip must be at least 1, not {step_skip}")

@@ -67,7 +67,7 @@ def record_rollout(env: Any, policy: Policy, path: str | Path, *, seed: int = 0,
 
     Parameters
     ----------
-    env : str or BatchEnv
+    env : str or Batch
         Id of a registered environment or a batch, as in `run_rollout`.
     policy : callable
         ``policy(observations (B, d), env) -> actions (B, 42)``.
@@ -88,7 +88,7 @@ def record_rollout(env: Any, policy: Policy, path: str | Path, *, seed: int = 0,
     OSError
         If the file cannot be written.
     """
-    _rerun()
+    import_rerun()
     return write_recording(run_rollout(env, policy, seed=seed, **kwargs), path)
 
 
@@ -100,7 +100,7 @@ def write_recording(rollout: Rollout, path: str | Path) -> Path:
     OSError
         If the file cannot be written: the folder is not writable or the disk full.
     """
-    rr = _rerun()
+    rr = import_rerun()
     stream = rr.RecordingStream(APPLICATION_ID)
     # rerun's own file sink reports a full disk in the log only, so the bytes go through memory
     memory = stream.binary_stream()
@@ -114,7 +114,7 @@ def write_recording(rollout: Rollout, path: str | Path) -> Path:
     data = memory.read()
     if not data:
         raise RuntimeError("rerun recorded nothing; is the environment variable RERUN set to off?")
-    return _write_whole(Path(path), data)
+    return write_whole(Path(path), data)
 
 
 def read_positions(path: str | Path) -> tuple[Array, Array]:
@@ -127,7 +127,7 @@ def read_positions(path: str | Path) -> tuple[Array, Array]:
     ValueError
         If it is not a whole recording of an animal.
     """
-    rr, path = _rerun(), Path(path)
+    rr, path = import_rerun(), Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"no recording at {path}")
     try:
@@ -149,7 +149,8 @@ def read_positions(path: str | Path) -> tuple[Array, Array]:
     return np.concatenate(times)[order], np.concatenate(nodes)[order]
 
 
-def _rerun() -> ModuleType:
+def import_rerun() -> ModuleType:
+    """Return the module rerun, or raise ImportError that says how to get it."""
     try:
         import rerun
     except ImportError as error:
@@ -157,7 +158,7 @@ def _rerun() -> ModuleType:
     return rerun
 
 
-def _write_whole(path: Path, data: bytes) -> Path:
+def write_whole(path: Path, data: bytes) -> Path:
     """Write the file under another name first, so that an error leaves nothing half done."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
@@ -175,9 +176,9 @@ def _write_whole(path: Path, data: bytes) -> Path:
     return path
 
 
-def _columns(stream: "rr.RecordingStream", rollout: Rollout, entity: str, columns: Any) -> None:
+def send_columns(stream: "rr.RecordingStream", rollout: Rollout, entity: str, columns: Any) -> None:
     """Send the columns of an entity over both timelines."""
-    rr = _rerun()
+    rr = import_rerun()
     indexes = [rr.TimeColumn("step", sequence=rollout.step), rr.TimeColumn("sim_time", duration=rollout.sim_time)]
     stream.send_columns(entity, indexes=indexes, columns=columns, strict=True)
 
@@ -194,7 +195,7 @@ def _view_box(rollout: Rollout) -> tuple[Array, float]:
 
 def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     """Log what does not move: axes, ground, home and target."""
-    rr = _rerun()
+    rr = import_rerun()
     centre, width = _view_box(rollout)
     half, depth = 4.0 * width, 0.01 * rollout.body_length
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
@@ -213,7 +214,7 @@ def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
         )  # fmt: skip
         stream.log("home", disc, static=True)
     if rollout.target is not None:
-        _columns(stream, rollout, "target", rr.Ellipsoids3D.columns(
+        send_columns(stream, rollout, "target", rr.Ellipsoids3D.columns(
             centers=rollout.target, half_sizes=np.full_like(rollout.target, rollout.target_radius),
         ))  # fmt: skip
         stream.log("target", rr.Ellipsoids3D.from_fields(colors=[TARGET], fill_mode="solid"), static=True)
@@ -221,7 +222,7 @@ def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
 
 def _log_animal(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     """Log the body."""
-    rr = _rerun()
+    rr = import_rerun()
     begin, end = rollout.segments()
     n_steps, n_elements = rollout.radii.shape
     body = rr.Capsules3D.columns(
@@ -231,21 +232,21 @@ def _log_animal(stream: "rr.RecordingStream", rollout: Rollout) -> None:
         radii=rollout.radii.ravel(),
         colors=contact_colors(rollout.normal_force, rollout.object_force).reshape(-1, 3),
     )
-    _columns(stream, rollout, "animal/body", body.partition([n_elements] * n_steps))
+    send_columns(stream, rollout, "animal/body", body.partition([n_elements] * n_steps))
     stream.log("animal/body", rr.Capsules3D.from_fields(fill_mode="solid"), static=True)
     nodes = rr.Points3D.columns(positions=rollout.nodes.reshape(-1, 3)).partition([rollout.nodes.shape[1]] * n_steps)
-    _columns(stream, rollout, "animal/nodes", nodes)
+    send_columns(stream, rollout, "animal/nodes", nodes)
     stream.log("animal/nodes", rr.Points3D.from_fields(radii=0.2 * _thickness(rollout), colors=[HEAD]), static=True)
 
 
 def _log_head(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     """Log the head, its trail, and where it is to go."""
-    rr = _rerun()
+    rr = import_rerun()
     thick, above = _thickness(rollout), 1.1 * rollout.head_radius.max()
     if rollout.head_is_an_end:
         ball = 1.5 * thick
         above = ball + 0.1 * thick
-        _columns(stream, rollout, "animal/head", rr.Ellipsoids3D.columns(
+        send_columns(stream, rollout, "animal/head", rr.Ellipsoids3D.columns(
             centers=rollout.head, half_sizes=np.full_like(rollout.head, ball),
         ))  # fmt: skip
         stream.log("animal/head", rr.Ellipsoids3D.from_fields(colors=[HEAD], fill_mode="solid"), static=True)
@@ -253,20 +254,20 @@ def _log_head(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     # a piece of the trail for each step; the blueprint shows all pieces up to now
     path = rollout.head + np.array([0.0, above, 0.0])
     pieces = np.stack([np.concatenate([path[:1], path[:-1]]), path], axis=1)
-    _columns(stream, rollout, "animal/trail", rr.LineStrips3D.columns(strips=pieces))
+    send_columns(stream, rollout, "animal/trail", rr.LineStrips3D.columns(strips=pieces))
     stream.log("animal/trail", rr.LineStrips3D.from_fields(radii=0.25 * thick, colors=[HEAD]), static=True)
 
     if rollout.direction is not None:
         arrows = rr.Arrows3D.columns(
             origins=path + np.array([0.0, thick, 0.0]), vectors=0.2 * rollout.body_length * rollout.direction
         )
-        _columns(stream, rollout, "animal/direction", arrows)
+        send_columns(stream, rollout, "animal/direction", arrows)
         stream.log("animal/direction", rr.Arrows3D.from_fields(radii=0.25 * thick, colors=[DIRECTION]), static=True)
 
 
 def _log_objects(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     """Log the objects."""
-    rr = _rerun()
+    rr = import_rerun()
     n_steps, n_objects = rollout.object_centre.shape[:2]
     if not n_objects:
         return
@@ -274,7 +275,7 @@ def _log_objects(stream: "rr.RecordingStream", rollout: Rollout) -> None:
         centers=rollout.object_centre.reshape(-1, 3),
         quaternions=rotations_from_z(rollout.object_axis).reshape(-1, 4),
     )
-    _columns(stream, rollout, "objects", poses.partition([n_objects] * n_steps))
+    send_columns(stream, rollout, "objects", poses.partition([n_objects] * n_steps))
     shapes = rr.Cylinders3D.from_fields(
         lengths=rollout.object_length, radii=rollout.object_radius, colors=[OBJECT], fill_mode="solid"
     )
@@ -288,11 +289,11 @@ def _thickness(rollout: Rollout) -> float:
 
 def _log_series(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     """Log what is plotted over time."""
-    rr = _rerun()
+    rr = import_rerun()
 
     def log(entity: str, values: Array, names: list[str], **style: Any) -> None:
         columns = rr.Scalars.columns(scalars=values.ravel())
-        _columns(stream, rollout, entity, columns.partition([values.shape[1]] * len(values)))
+        send_columns(stream, rollout, entity, columns.partition([values.shape[1]] * len(values)))
         stream.log(entity, rr.SeriesLines(names=names, **style), static=True)
 
     for k, (term, values) in enumerate(rollout.rewards.items()):
@@ -346,7 +347,7 @@ def rotations_from_z(vectors: Array) -> Array:
 
 def _blueprint(rollout: Rollout) -> Any:
     """Describe the layout: the scene, and beside it rewards, return and activations, playing in real time."""
-    rr, rrb = _rerun(), importlib.import_module("rerun.blueprint")
+    rr, rrb = import_rerun(), importlib.import_module("rerun.blueprint")
 
     from_start = rrb.VisibleTimeRange(
         "sim_time", start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()

@@ -3,23 +3,46 @@
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Protocol, Self
 
 import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
+from ..bodies.body import Body, Pose
 from ..bodies.muscles import activation_names
-from ..engine.model import Array, Index
-
-if TYPE_CHECKING:
-    from ..envs import BatchEnv
+from ..engine.model import Array, Index, State
 
 HOME_RADIUS = 0.1
 """Of the disc that marks home: how near to it the head counts as there [m]"""
 
 Policy = Callable[[Array, Any], Array]
-"""Observations (B, d) and the BatchEnv in, actions (B, 42) out"""
+"""Observations (B, d) and the batch in, actions (B, 42) out"""
+
+
+class Batch(Protocol):
+    """What is drawn of a batch of environments; `elastica_gym.envs.BatchEnv` is one."""
+
+    num_envs: int
+    body: Body
+    state: State
+    activations: Array
+    goal: Array
+    control_dt: float
+    render_size: tuple[int, int]
+    task: Any
+    spec: Any
+
+    @property
+    def target(self) -> Array | None:
+        """Positions of the targets [m], (B, 3), if there is something to show."""
+
+    @property
+    def pose(self) -> Pose:
+        """Where the animals are."""
+
+    def situation(self) -> Any:
+        """Return where the environments stand."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,7 +172,7 @@ class Recorder:
 
     Parameters
     ----------
-    env : BatchEnv
+    env : Batch
         The environment, which may also be wrapped.
     index : int
         Which environment of the batch to follow.
@@ -158,7 +181,7 @@ class Recorder:
     """
 
     def __init__(self, env: Any, index: int = 0, *, keep: int | None = None) -> None:
-        self.env: BatchEnv = _batch(env)
+        self.env: Batch = _batch(env)
         if not 0 <= index < self.env.num_envs:
             raise ValueError(f"index must be from 0 to {self.env.num_envs - 1}, not {index}")
         model = self.env.body.model
@@ -241,7 +264,7 @@ def run_rollout(env: Any, policy: Policy, *, seed: int = 0, index: int = 0, **en
 
     Parameters
     ----------
-    env : str or BatchEnv
+    env : str or Batch
         Id of a registered environment, of which a batch of one is made, or a batch to use. A batch
         must not reset at the step that ends an episode (``AutoresetMode.SAME_STEP``), since its last
         moment would be lost.
@@ -275,7 +298,7 @@ def run_rollout(env: Any, policy: Policy, *, seed: int = 0, index: int = 0, **en
     return recorder.rollout()
 
 
-def _direction(env: "BatchEnv", i: int) -> Array:
+def _direction(env: Batch, i: int) -> Array:
     """Return the direction of the goal that the animal sees, in the lab, (3,), or (0,) where it sees none."""
     names = env.task.goal_names
     if not {"goal/forward", "goal/right"} <= set(names):
@@ -286,7 +309,7 @@ def _direction(env: "BatchEnv", i: int) -> Array:
     return np.array([forward * hx - right * hz, 0.0, forward * hz + right * hx]) / size
 
 
-def _home(env: "BatchEnv", i: int) -> Array:
+def _home(env: Batch, i: int) -> Array:
     """Return where the animal has to come back to, on the ground, (3,), or (0,) where its task has no such place."""
     # tasks that show the way home have it first in their goals
     if "home/forward" not in env.task.goal_names:
@@ -294,7 +317,7 @@ def _home(env: "BatchEnv", i: int) -> Array:
     return np.array([env.goal[i, 0], 0.0, env.goal[i, 1]])
 
 
-def _batch(env: Any) -> "BatchEnv":
+def _batch(env: Any) -> Any:
     """Return the batch inside wrappers or inside the view of a batch of one."""
     inner = getattr(env, "unwrapped", env)
     return getattr(inner, "batch", inner)

@@ -1,14 +1,9 @@
 """Environments as they are now, in pictures: what their ``render`` returns."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from .frames import Camera, Image, Stage, figures, following, outline
-from .rollout import Recorder
-
-if TYPE_CHECKING:
-    from ..envs import BatchEnv
+from .rollout import Batch, Recorder
 
 
 class View:
@@ -19,11 +14,11 @@ class View:
 
     Parameters
     ----------
-    env : BatchEnv
+    env : Batch
         Pictures have its ``render_size``.
     """
 
-    def __init__(self, env: "BatchEnv") -> None:
+    def __init__(self, env: Batch) -> None:
         width, height = env.render_size
         self._aspect = width / height
         self._stage = Stage(width=width, height=height, unit=env.body.senses.length)

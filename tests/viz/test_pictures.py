@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.agents.test_curves import assert_inside
+from tests.rl.test_curves import assert_inside
 
 ROOT = Path(__file__).parents[2]
 

@@ -20,20 +20,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..cosserat.rigidbody import RigidBodyBase, Sphere
-from ..cosserat.rod.rod_base import RodBase
 from ..engine.model import Array
-from .recording import (
+from ..viz.recording import (
     APPLICATION_ID,
     BACKGROUND,
     HEAD,
     OBJECT,
     SERIES,
-    _columns,
-    _rerun,
-    _write_whole,
+    import_rerun,
     rotations_from_z,
+    send_columns,
+    write_whole,
 )
+from .rigidbody import RigidBodyBase, Sphere
+from .rod.rod_base import RodBase
 
 if TYPE_CHECKING:
     import rerun as rr
@@ -52,7 +52,7 @@ class SystemRecorder:
 
     def __init__(self, name: str) -> None:
         # without rerun, say so before the run rather than after it
-        _rerun()
+        import_rerun()
         self._name = name
         self._step: list[int] = []
         self._sim_time: list[float] = []
@@ -83,7 +83,7 @@ class SystemRecorder:
         OSError
             If the file cannot be written.
         """
-        rr = _rerun()
+        rr = import_rerun()
         stream = rr.RecordingStream(APPLICATION_ID)
         memory = stream.binary_stream()
         stream.send_blueprint(_blueprint(self._name))
@@ -96,8 +96,8 @@ class SystemRecorder:
         for number, body in enumerate(self._bodies):
             _log_body(stream, times, number, self._series("centre", number), self._series("axis", number), body)
         for kind, values in zip(ENERGIES, np.array(self._energies).T, strict=True):
-            _columns(stream, times, f"energy/{kind}", rr.Scalars.columns(scalars=values))
-        return _write_whole(Path(path), memory.read())
+            send_columns(stream, times, f"energy/{kind}", rr.Scalars.columns(scalars=values))
+        return write_whole(Path(path), memory.read())
 
     def _series(self, what: str, number: int) -> Array:
         return np.array([moment[what][number] for moment in self._moments])
@@ -114,7 +114,7 @@ def _log_rod(
     stream: "rr.RecordingStream", times: Any, number: int, nodes: Array, radii: Array, is_ring: bool
 ) -> None:
     """Log a rod: nodes [m], (T, N, 3), and radii of elements [m], (T, M)."""
-    rr = _rerun()
+    rr = import_rerun()
     ends = np.concatenate([nodes, nodes[:, :1]], axis=1) if is_ring else nodes
     edges, color = np.diff(ends, axis=1), SERIES[number % len(SERIES)]
     n_steps, n_elements = radii.shape
@@ -122,10 +122,10 @@ def _log_rod(
         translations=ends[:, :-1].reshape(-1, 3), quaternions=rotations_from_z(edges).reshape(-1, 4),
         lengths=np.linalg.norm(edges, axis=-1).ravel(), radii=radii.ravel(),
     )  # fmt: skip
-    _columns(stream, times, f"rods/{number}/body", body.partition([n_elements] * n_steps))
+    send_columns(stream, times, f"rods/{number}/body", body.partition([n_elements] * n_steps))
     stream.log(f"rods/{number}/body", rr.Capsules3D.from_fields(fill_mode="solid", colors=[color]), static=True)
     points = rr.Points3D.columns(positions=nodes.reshape(-1, 3)).partition([nodes.shape[1]] * n_steps)
-    _columns(stream, times, f"rods/{number}/nodes", points)
+    send_columns(stream, times, f"rods/{number}/nodes", points)
     style = rr.Points3D.from_fields(radii=0.2 * float(np.median(radii)), colors=[HEAD])
     stream.log(f"rods/{number}/nodes", style, static=True)
 
@@ -134,14 +134,14 @@ def _log_body(
     stream: "rr.RecordingStream", times: Any, number: int, centre: Array, axis: Array, body: RigidBodyBase
 ) -> None:
     """Log a rigid body: its centre [m] and the unit vector along its axis, (T, 3) each."""
-    rr = _rerun()
+    rr = import_rerun()
     entity = f"bodies/{number}"
     shape: Any
     if isinstance(body, Sphere):
-        _columns(stream, times, entity, rr.Ellipsoids3D.columns(centers=centre))
+        send_columns(stream, times, entity, rr.Ellipsoids3D.columns(centers=centre))
         shape = rr.Ellipsoids3D.from_fields(half_sizes=[[body.radius] * 3], colors=[OBJECT], fill_mode="solid")
     else:
-        _columns(stream, times, entity, rr.Cylinders3D.columns(centers=centre, quaternions=rotations_from_z(axis)))
+        send_columns(stream, times, entity, rr.Cylinders3D.columns(centers=centre, quaternions=rotations_from_z(axis)))
         shape = rr.Cylinders3D.from_fields(
             lengths=[body.length], radii=[body.radius], colors=[OBJECT], fill_mode="solid"
         )
