@@ -11,6 +11,8 @@ if [ "${1:-}" = --slow ]; then
     shift
 fi
 .venv/bin/ruff check .
+.venv/bin/ruff format --check .
+.venv/bin/lint-imports
 .venv/bin/mypy
 .venv/bin/python scripts/benchmark.py --start
 .venv/bin/python -m pytest -n 2 "${select[@]}" "$@"

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from ..engine.scene import Scheme
 from ..engine.stability import Limit
 from ..engine.threads import available_cpus, side_by_side
-from .modules.declaration import Declaration
+from .declaration import Declaration
 from .rigidbody.rigid_body import RigidBodyBase
 from .rod.cosserat_rod import CosseratRod
 from .simulation import Callbacks, Simulation, is_lowered

@@ -15,9 +15,9 @@ from ..engine.model import Array
 from ..engine.rod import Continuum, Rod, as_indices, stable_time_step
 from ..engine.scene import Hooks, Scheme
 from ..engine.stability import Limit, limits
+from .declaration import Declaration
 from .dissipation import AnalyticalLinearDamper
 from .lowering import SceneBuilder, is_built_in
-from .modules.declaration import Declaration
 from .rigidbody.rigid_body import RigidBodyBase
 from .rod.cosserat_rod import MATERIAL, CosseratRod, Lowered
 from .surface.plane import Plane

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..declaration import Declaration
 from ..not_offered import refuse_methods
 from ..rigidbody.rigid_body import RigidBodyBase
 from ..rod.cosserat_rod import CosseratRod
 from ..surface.surface_base import SurfaceBase
-from .declaration import Declaration
 
 if TYPE_CHECKING:
     from ..ensemble import Ensemble

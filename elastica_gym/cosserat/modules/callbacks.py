@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..callback_functions import CallBackBaseClass
+from ..declaration import Declaration
 from ..not_offered import refuse_names
-from .declaration import Declaration
 
 if TYPE_CHECKING:
     from .base_system import BaseSystemCollection as _Collection

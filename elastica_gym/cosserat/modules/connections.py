@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...engine.rod import as_indices
+from ..declaration import Declaration
 from ..joint import ConnectionBase
 from ..not_offered import refuse_names
-from .declaration import Declaration
 
 if TYPE_CHECKING:
     from .base_system import BaseSystemCollection as _Collection

@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING, Any
 
 from ..contact_forces import NoContact
+from ..declaration import Declaration
 from ..not_offered import refuse_names
-from .declaration import Declaration
 
 if TYPE_CHECKING:
     from .base_system import BaseSystemCollection as _Collection

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Any
 
+from ..declaration import Declaration
 from ..dissipation import DamperBase
 from ..not_offered import refuse_names
-from .declaration import Declaration
 
 if TYPE_CHECKING:
     from .base_system import BaseSystemCollection as _Collection

@@ -1,12 +1,12 @@
 """Simulators and declarations by PyElastica's names for annotations."""
 
+from ..declaration import Declaration
 from .base_system import BaseSystemCollection
 from .callbacks import CallBacks
 from .connections import Connections
 from .constraints import Constraints
 from .contact import Contact
 from .damping import Damping
-from .declaration import Declaration
 from .forcing import Forcing
 
 ModuleProtocol = MixinProtocol = Declaration

@@ -3,7 +3,7 @@
 import inspect
 from typing import Any
 
-from ..keywords import known_keywords, warn_of_unknown
+from .keywords import known_keywords, warn_of_unknown
 
 
 class Declaration:
