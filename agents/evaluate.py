@@ -99,8 +99,12 @@ def write_json(path: Path, arguments: EvaluateArguments, result: Evaluation, **w
 
     given = {key: str(value) if isinstance(value, Path) else value for key, value in vars(arguments).items()}
     everything = {
-        **what, **result.summary(), "per_episode": result.per_episode(), "arguments": given, **machine.describe(),
-    }  # fmt: skip
+        **what,
+        **result.summary(),
+        "per_episode": result.per_episode(),
+        "arguments": given,
+        **machine.describe(),
+    }
     path.write_text(json.dumps(_without_nan(everything), indent=2, allow_nan=False) + "\n")
     print(f"wrote {path}")
 

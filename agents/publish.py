@@ -85,9 +85,14 @@ def _evaluate(
 
     with Bar(f"evaluating {arguments.episodes} episodes") as bar:
         result = evaluate(
-            policy, env_id, episodes=arguments.episodes, seed=arguments.seed, n_threads=arguments.threads,
-            env_kwargs=env_kwargs, show=bar.show,
-        )  # fmt: skip
+            policy,
+            env_id,
+            episodes=arguments.episodes,
+            seed=arguments.seed,
+            n_threads=arguments.threads,
+            env_kwargs=env_kwargs,
+            show=bar.show,
+        )
     print_table(f"{arguments.name}, {arguments.episodes} episodes from seed {arguments.seed}", result)
     return result
 
@@ -119,8 +124,17 @@ def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "E
 def score_of(name: str, result: "Evaluation") -> dict[str, Any]:
     """Return what the card says of an evaluation."""
     summary, scored = result.summary(), machine.describe()
-    scores = ("episodes", "first_seed", "success_rate", "success_interval95", "distance_mean", "distance_ci95",
-              "return_mean", "return_ci95", "elsewhere95")  # fmt: skip
+    scores = (
+        "episodes",
+        "first_seed",
+        "success_rate",
+        "success_interval95",
+        "distance_mean",
+        "distance_ci95",
+        "return_mean",
+        "return_ci95",
+        "elsewhere95",
+    )
     return {
         "score": {key: _rounded(summary[key]) for key in scores},
         "intervals": INTERVALS,

@@ -55,8 +55,16 @@ class SearchArguments:
     """Folder of this search, instead of one in `out` named by id, seed and time."""
 
 
-LOWEST = {"seed": 0, "evaluations": 1, "minutes": 0.001, "restarts": 0, "population": 4, "threads": 1,
-          "evaluation_episodes": 1, "evaluation_seed": 0}  # fmt: skip
+LOWEST = {
+    "seed": 0,
+    "evaluations": 1,
+    "minutes": 0.001,
+    "restarts": 0,
+    "population": 4,
+    "threads": 1,
+    "evaluation_episodes": 1,
+    "evaluation_seed": 0,
+}
 DEFAULT_EVALUATIONS = 6000
 
 

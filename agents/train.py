@@ -141,8 +141,10 @@ def _start(start: str | None) -> str | None:
     if start is None or start in names():
         return start
     if not Path(start).is_dir():
-        raise BadInputError(f"--start-from {start} is neither the folder of a run nor a pretrained policy, "
-                            f"of which there are: {', '.join(names())}")  # fmt: skip
+        raise BadInputError(
+            f"--start-from {start} is neither the folder of a run nor a pretrained policy, "
+            f"of which there are: {', '.join(names())}"
+        )
     return str(Path(start).resolve())
 
 
@@ -166,8 +168,16 @@ def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
 
 def _check(config: dict[str, Any]) -> None:
     choose_environment(config["env"])
-    lowest = {"steps": 0 if config.get("imitate") else 1, "minutes": 0.001, "imitate": 0, "threads": 1,
-              "evaluations": 0, "evaluation_episodes": 1, "recordings": 0, "checkpoint_minutes": 0.0}  # fmt: skip
+    lowest = {
+        "steps": 0 if config.get("imitate") else 1,
+        "minutes": 0.001,
+        "imitate": 0,
+        "threads": 1,
+        "evaluations": 0,
+        "evaluation_episodes": 1,
+        "recordings": 0,
+        "checkpoint_minutes": 0.0,
+    }
     check_bounds(config, lowest)
     if config.get("imitate") and config["algo"] != "ppo":
         raise BadInputError(f"imitate must be 0 for {config['algo']}, got {config['imitate']}: only ppo can imitate")

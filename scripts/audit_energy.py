@@ -116,8 +116,10 @@ def main() -> None:
     for policy in arguments.policies:
         choose("policy", policy, POLICIES)
     check_bounds(dataclasses.asdict(arguments), {"episodes": 1, "steps": 1, "seed": 0})
-    table = Table(title="Energy over the work of the muscles: what is positive comes from nothing. "
-                        "Shortest element, over its length at rest")
+    table = Table(
+        title="Energy over the work of the muscles: what is positive comes from nothing. "
+        "Shortest element, over its length at rest"
+    )
     pairs = [(env_id, policy) for env_id in arguments.env for policy in arguments.policies]
     rows = []
     for env_id, policy in track(pairs, "audits"):

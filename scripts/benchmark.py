@@ -104,9 +104,13 @@ def describe_machine() -> dict[str, Any]:
 
     names = ("elastica-gym", "numpy", "numba", "llvmlite", "gymnasium", "pyelastica")
     return {
-        "cpu": cpu_name(), "llvm_cpu": llvmlite.binding.get_host_cpu_name(), "cpus": os.cpu_count(),
-        "system": platform.platform(), "python": platform.python_version(), "versions": {n: found(n) for n in names},
-    }  # fmt: skip
+        "cpu": cpu_name(),
+        "llvm_cpu": llvmlite.binding.get_host_cpu_name(),
+        "cpus": os.cpu_count(),
+        "system": platform.platform(),
+        "python": platform.python_version(),
+        "versions": {n: found(n) for n in names},
+    }
 
 
 def cpu_name() -> str:
@@ -140,8 +144,13 @@ def measure_snake(n: int, n_pairs: int) -> dict[str, Any]:
     # PyElastica adds 1e-14 m to the length of an element, which the strains of short ones show (docs/differences.md)
     agreement = require_agreement("the snake", rod, dt, 1e-11 + 2e-14 * n / LENGTH, **loads)
     pair = oracle.both([rod], dt, **loads)
-    return {"scene": "snake", "elements": n, **race(*pair, STEPS_THEIRS, n_pairs), "target": TARGETS.get(n),
-            "agreement": agreement}  # fmt: skip
+    return {
+        "scene": "snake",
+        "elements": n,
+        **race(*pair, STEPS_THEIRS, n_pairs),
+        "target": TARGETS.get(n),
+        "agreement": agreement,
+    }
 
 
 def measure_arms(n_pairs: int) -> dict[str, Any]:
@@ -164,8 +173,13 @@ def measure_arms(n_pairs: int) -> dict[str, Any]:
     loads = {"gravity": GRAVITY, "planes": [ground()], "rod_contact": ARMS_CONTACT, "couple": couple}
     agreement = require_agreement("the arms", rod, ARMS_STEP, 1e-11, cylinders=[held(0.1)], **loads)
     pair = oracle.both([rod], ARMS_STEP, corrected=False, cylinders=[held()], **loads)
-    return {"scene": "arms and object", "elements": rod.n_elements, **race(*pair, STEPS_THEIRS_ARMS, n_pairs),
-            "target": ARMS_TARGET, "agreement": agreement}  # fmt: skip
+    return {
+        "scene": "arms and object",
+        "elements": rod.n_elements,
+        **race(*pair, STEPS_THEIRS_ARMS, n_pairs),
+        "target": ARMS_TARGET,
+        "agreement": agreement,
+    }
 
 
 def measure_rods(n_rods: int, n_pairs: int) -> dict[str, Any]:
@@ -185,8 +199,11 @@ def measure_rods(n_rods: int, n_pairs: int) -> dict[str, Any]:
         simulator, rods = many_rods.rows(lib, n_rods)
         simulator.finalize()
         many_rods.shake(rods)
-        runs.append(lambda lib=lib, simulator=simulator, n_steps=n_steps: lib.integrate(
-            lib.PositionVerlet(), simulator, n_steps * many_rods.DT, n_steps, progress_bar=False))
+        runs.append(
+            lambda lib=lib, simulator=simulator, n_steps=n_steps: lib.integrate(
+                lib.PositionVerlet(), simulator, n_steps * many_rods.DT, n_steps, progress_bar=False
+            )
+        )
     for run in runs:
         run()
     ours, theirs = [], []
@@ -196,11 +213,18 @@ def measure_rods(n_rods: int, n_pairs: int) -> dict[str, Any]:
         theirs.append(best_theirs / LIBRARY_STEPS_THEIRS)
     ratios = [b / a for a, b in zip(ours, theirs, strict=True)]
     return {
-        "scene": "rods, joined and touching", "rods": n_rods, "elements": many_rods.N_ELEMENTS * n_rods,
-        "dt": many_rods.DT, "ours_us": 1e6 * statistics.median(ours), "pyelastica_us": 1e6 * statistics.median(theirs),
-        "ratio": statistics.median(ratios), "ratios": ratios, "target": None, "agreement": agreement,
+        "scene": "rods, joined and touching",
+        "rods": n_rods,
+        "elements": many_rods.N_ELEMENTS * n_rods,
+        "dt": many_rods.DT,
+        "ours_us": 1e6 * statistics.median(ours),
+        "pyelastica_us": 1e6 * statistics.median(theirs),
+        "ratio": statistics.median(ratios),
+        "ratios": ratios,
+        "target": None,
+        "agreement": agreement,
         "simulated_seconds_per_second": many_rods.DT / statistics.median(ours),
-    }  # fmt: skip
+    }
 
 
 def require_same_rods(n_rods: int, n_steps: int = 100) -> dict[str, float]:
@@ -241,8 +265,11 @@ def measure_own_force(n_pairs: int) -> dict[str, float]:
         if has_force:
             simulator.add_forcing_to(rods[0]).using(Nothing)
         simulator.finalize()
-        runs.append(lambda simulator=simulator: library.integrate(
-            library.PositionVerlet(), simulator, STEPS_OURS * many_rods.DT, STEPS_OURS, progress_bar=False))
+        runs.append(
+            lambda simulator=simulator: library.integrate(
+                library.PositionVerlet(), simulator, STEPS_OURS * many_rods.DT, STEPS_OURS, progress_bar=False
+            )
+        )
     without, with_force = (1e6 * best / STEPS_OURS for best in best_slices(runs, SLICES * n_pairs))
     return {"without_us": without, "with_us": with_force, "added_us": with_force - without, "limit_us": OWN_FORCE_LIMIT}
 
@@ -264,10 +291,13 @@ def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_p
         ours.append(best_ours / STEPS_OURS)
     ratios = [b / a for a, b in zip(ours, theirs, strict=True)]
     return {
-        "dt": dt, "ours_us": 1e6 * statistics.median(ours), "pyelastica_us": 1e6 * statistics.median(theirs),
-        "ratio": statistics.median(ratios), "ratios": ratios,
+        "dt": dt,
+        "ours_us": 1e6 * statistics.median(ours),
+        "pyelastica_us": 1e6 * statistics.median(theirs),
+        "ratio": statistics.median(ratios),
+        "ratios": ratios,
         "simulated_seconds_per_second": dt / statistics.median(ours),
-    }  # fmt: skip
+    }
 
 
 def require_agreement(name: str, rod: Any, dt: float, allowed: float, **loads: Any) -> dict[str, float]:
@@ -280,8 +310,10 @@ def require_agreement(name: str, rod: Any, dt: float, allowed: float, **loads: A
     twin.advance(100)
     distance, (step, _) = oracle.distance(model, state, twin), oracle.worst_step([rod], dt, 50, **loads)
     if not (distance < 1e-9 and step < allowed):
-        sys.exit(f"the programs do not agree on {name} of {rod.n_elements} elements: {distance:.2g} m after 100 steps "
-                 f"(1e-9 allowed), {step:.2g} in a step from a random state ({allowed:.2g} allowed)")  # fmt: skip
+        sys.exit(
+            f"the programs do not agree on {name} of {rod.n_elements} elements: {distance:.2g} m after 100 steps "
+            f"(1e-9 allowed), {step:.2g} in a step from a random state ({allowed:.2g} allowed)"
+        )
     return {"metres_after_100_steps": distance, "relative_in_one_step": step}
 
 
@@ -325,11 +357,16 @@ def measure_environments(env_id: str, n_pairs: int, num_envs: int = 64, n_steps:
         times = [best_slices(ways) for _ in range(n_pairs)]
     one, two, _ = (num_envs * n_steps / statistics.median(column) for column in zip(*times, strict=True))
     return {
-        "id": env_id, "environments": num_envs, "sim_dt": mine.sim_dt, "substeps": mine.n_substeps,
-        "steps_per_second_one_thread": one, "steps_per_second_two_threads": two,
+        "id": env_id,
+        "environments": num_envs,
+        "sim_dt": mine.sim_dt,
+        "substeps": mine.n_substeps,
+        "steps_per_second_one_thread": one,
+        "steps_per_second_two_threads": two,
         "threads_ratio": statistics.median(t[0] / t[1] for t in times),
-        "processes_ratio": statistics.median(t[0] / t[2] for t in times), "target": THREADS_TARGET,
-    }  # fmt: skip
+        "processes_ratio": statistics.median(t[0] / t[2] for t in times),
+        "target": THREADS_TARGET,
+    }
 
 
 _made: list[Any] = []
@@ -374,16 +411,22 @@ def measure_start() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         environment = {**os.environ, "ELASTICA_GYM_CACHE_DIR": folder}
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
-        times = [subprocess.run([sys.executable, "-c", FIRST_STEP], env=environment, stdout=subprocess.PIPE, text=True,
-                                check=True).stdout for _ in range(2)]  # fmt: skip
+        times = [
+            subprocess.run(
+                [sys.executable, "-c", FIRST_STEP], env=environment, stdout=subprocess.PIPE, text=True, check=True
+            ).stdout
+            for _ in range(2)
+        ]
     cold, warm = (float(line) for line in times)
     return {"cold_s": cold, "warm_s": warm}
 
 
 def describe_start(start: dict[str, float]) -> str:
     """Return a line on how long a first step takes."""
-    return (f"first step: {start['cold_s']:.1f} s cold (at most {COLD_LIMIT:g}), "
-            f"{start['warm_s']:.1f} s warm (at most {WARM_LIMIT:g})")  # fmt: skip
+    return (
+        f"first step: {start['cold_s']:.1f} s cold (at most {COLD_LIMIT:g}), "
+        f"{start['warm_s']:.1f} s warm (at most {WARM_LIMIT:g})"
+    )
 
 
 # what is printed
@@ -400,19 +443,34 @@ def show(results: dict[str, Any]) -> None:
         physics.add_column(column, justify="left" if column == "scene" else "right")
     for row in [*results["physics"], *results["library"]]:
         demanded = "" if row["target"] is None else f"{row['target']:g}"
-        physics.add_row(row["scene"], f"{row['elements']}", f"{row['pyelastica_us']:.1f}", f"{row['ours_us']:.2f}",
-                        f"{row['ratio']:.1f}", demanded, f"{row['simulated_seconds_per_second']:.1f}")  # fmt: skip
+        physics.add_row(
+            row["scene"],
+            f"{row['elements']}",
+            f"{row['pyelastica_us']:.1f}",
+            f"{row['ours_us']:.2f}",
+            f"{row['ratio']:.1f}",
+            demanded,
+            f"{row['simulated_seconds_per_second']:.1f}",
+        )
     environments = Table(title="Environment steps per second, 64 environments, random actions")
     for column in ("id", "one thread", "two threads", "ratio", "demanded", "two processes"):
         environments.add_column(column, justify="left" if column == "id" else "right")
     for row in results["environments"]:
-        environments.add_row(row["id"], f"{row['steps_per_second_one_thread']:,.0f}",
-                             f"{row['steps_per_second_two_threads']:,.0f}", f"{row['threads_ratio']:.2f}",
-                             f"{row['target']:g}", f"{row['processes_ratio']:.2f}")  # fmt: skip
+        environments.add_row(
+            row["id"],
+            f"{row['steps_per_second_one_thread']:,.0f}",
+            f"{row['steps_per_second_two_threads']:,.0f}",
+            f"{row['threads_ratio']:.2f}",
+            f"{row['target']:g}",
+            f"{row['processes_ratio']:.2f}",
+        )
     own = results["own_force"]
     console.print(physics, environments)
-    console.print(f"a force of one's own that does nothing adds {own['added_us']:.2f} us to a step of the library "
-                  f"(at most {own['limit_us']:g})", highlight=False)  # fmt: skip
+    console.print(
+        f"a force of one's own that does nothing adds {own['added_us']:.2f} us to a step of the library "
+        f"(at most {own['limit_us']:g})",
+        highlight=False,
+    )
     console.print(describe_start(results["start"]), highlight=False)
 
 

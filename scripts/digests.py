@@ -102,8 +102,16 @@ def _scene(number: int) -> str:
     rng, sim, rods, dt = np.random.default_rng(number), Simulator(), [], 2.0**-16
     for place in range(1 + number % 3):
         rod = ea.CosseratRod.straight_rod(
-            int(rng.integers(8, 30)), np.array([0.0, 0.3 + 0.022 * place, 0.0]), X if place % 2 else Z, Y, 0.3,
-            0.01, 1000.0, youngs_modulus=1e5, shear_modulus=4e4)  # fmt: skip
+            int(rng.integers(8, 30)),
+            np.array([0.0, 0.3 + 0.022 * place, 0.0]),
+            X if place % 2 else Z,
+            Y,
+            0.3,
+            0.01,
+            1000.0,
+            youngs_modulus=1e5,
+            shear_modulus=4e4,
+        )
         rod.velocity_collection[:] = 0.1 * rng.standard_normal(rod.velocity_collection.shape)
         sim.append(rod)
         rods.append(rod)
@@ -145,8 +153,16 @@ def _add_features(sim: Simulator, rod: ea.CosseratRod, rng: np.random.Generator,
         sim.add_forcing_to(rod).using(ea.UniformTorques, 1e-3, Y)
     if rng.random() < 0.4:
         sim.add_forcing_to(rod).using(
-            ea.MuscleTorques, base_length=0.3, b_coeff=rng.uniform(0.0, 0.01, 4), period=0.5, wave_number=10.0,
-            phase_shift=0.0, direction=Y, rest_lengths=rod.rest_lengths, ramp_up_time=0.1)  # fmt: skip
+            ea.MuscleTorques,
+            base_length=0.3,
+            b_coeff=rng.uniform(0.0, 0.01, 4),
+            period=0.5,
+            wave_number=10.0,
+            phase_shift=0.0,
+            direction=Y,
+            rest_lengths=rod.rest_lengths,
+            ramp_up_time=0.1,
+        )
     if rng.random() < 0.5:
         sim.constrain(rod).using(ea.OneEndFixedBC, constrained_position_idx=(0,), constrained_director_idx=(0,))
     kind = int(rng.integers(4))
@@ -168,9 +184,28 @@ def _training() -> str:
 
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(
-            [sys.executable, "-m", "agents.train", "--env", IDS[0], "--steps", "8192", "--threads", "1",
-             "--evaluations", "1", "--evaluation-episodes", "2", "--recordings", "0", "--folder", f"{folder}/run"],
-            check=True, stdout=subprocess.DEVNULL)  # fmt: skip
+            [
+                sys.executable,
+                "-m",
+                "agents.train",
+                "--env",
+                IDS[0],
+                "--steps",
+                "8192",
+                "--threads",
+                "1",
+                "--evaluations",
+                "1",
+                "--evaluation-episodes",
+                "2",
+                "--recordings",
+                "0",
+                "--folder",
+                f"{folder}/run",
+            ],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
         from stable_baselines3 import PPO
 
         model = PPO.load(f"{folder}/run/model.zip", device="cpu")
@@ -193,8 +228,24 @@ def _policy(name: str) -> str:
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder, "scores.json")
         subprocess.run(
-            [sys.executable, "-m", "agents.evaluate", "--pretrained", name, "--episodes", "4", "--seed", "2000000",
-             "--threads", "1", "--json", str(out)], check=True, stdout=subprocess.DEVNULL)  # fmt: skip
+            [
+                sys.executable,
+                "-m",
+                "agents.evaluate",
+                "--pretrained",
+                name,
+                "--episodes",
+                "4",
+                "--seed",
+                "2000000",
+                "--threads",
+                "1",
+                "--json",
+                str(out),
+            ],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
         found = json.loads(out.read_text())
     return hashlib.sha256(json.dumps(found["per_episode"], sort_keys=True).encode()).hexdigest()[:16]
 

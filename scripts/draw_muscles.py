@@ -48,8 +48,16 @@ def draw(body: Body) -> "Figure":
         for name, (begin, end) in zip(body.arms, muscles.arms, strict=True):
             along = np.linspace(0.0, 1.0, 400)
             draw_arm(ax, begin + along * (end - begin), strength[:, None] * basis(along, muscles.widths[direction]))
-            ax.text(0.5 * (begin + end), 0.97, f"{name} half", transform=ax.get_xaxis_transform(), ha="center",
-                    va="top", fontsize=8, color="0.45")  # fmt: skip
+            ax.text(
+                0.5 * (begin + end),
+                0.97,
+                f"{name} half",
+                transform=ax.get_xaxis_transform(),
+                ha="center",
+                va="top",
+                fontsize=8,
+                color="0.45",
+            )
         ax.set_title(f"{direction}: {ABOUT[direction]}", loc="left", fontsize=10)
         ax.set_ylabel("couple [mN m]")
         ax.set_ylim(0.0, 1.2 * strength.max())

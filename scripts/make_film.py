@@ -39,8 +39,15 @@ def main() -> None:
     output = arguments.output or IMAGES / f"{arguments.name}.gif"
     check_film(output, arguments.size)
     policy, card = load_pretrained(arguments.name)
-    film(policy, card["environment"], output, seed=arguments.seed, every=arguments.every, size=arguments.size,
-         env_kwargs=card["env_kwargs"])  # fmt: skip
+    film(
+        policy,
+        card["environment"],
+        output,
+        seed=arguments.seed,
+        every=arguments.every,
+        size=arguments.size,
+        env_kwargs=card["env_kwargs"],
+    )
 
 
 if __name__ == "__main__":

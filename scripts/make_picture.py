@@ -98,9 +98,12 @@ def along_x(rollout: Rollout) -> Rollout:
     turn = np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
     origin = centre[0] * [1.0, 0.0, 1.0]
     return replace(
-        rollout, nodes=(rollout.nodes - origin) @ turn, object_centre=(rollout.object_centre - origin) @ turn,
-        object_axis=rollout.object_axis @ turn, home=None if rollout.home is None else (rollout.home - origin) @ turn,
-    )  # fmt: skip
+        rollout,
+        nodes=(rollout.nodes - origin) @ turn,
+        object_centre=(rollout.object_centre - origin) @ turn,
+        object_axis=rollout.object_axis @ turn,
+        home=None if rollout.home is None else (rollout.home - origin) @ turn,
+    )
 
 
 if __name__ == "__main__":

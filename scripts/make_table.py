@@ -32,8 +32,15 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[1]
 UNTRAINED = ("zero", "random", "scripted", "pretrained")
 """Policies that take no training here"""
-LABELS = {"zero": "zero", "random": "random", "scripted": "scripted", "cma": "CMA-ES", "ppo": "PPO", "sac": "SAC",
-          "pretrained": "pretrained"}  # fmt: skip
+LABELS = {
+    "zero": "zero",
+    "random": "random",
+    "scripted": "scripted",
+    "cma": "CMA-ES",
+    "ppo": "PPO",
+    "sac": "SAC",
+    "pretrained": "pretrained",
+}
 """Policies in the order of the table"""
 METRICS = {"returns": "return", "distances": "distance [m]"}
 RESAMPLES = 2000
@@ -86,8 +93,11 @@ def cells_of(arguments: Arguments) -> list[Cell]:
     """Return the cells, those that take no training first."""
     envs = [env_id.rpartition("/")[2] for env_id in IDS]
     for name in (*arguments.off_policy, *arguments.only):
-        choose("environment or policy" if name in arguments.only else "environment", name.rpartition("/")[2],
-               (*envs, *LABELS) if name in arguments.only else envs)  # fmt: skip
+        choose(
+            "environment or policy" if name in arguments.only else "environment",
+            name.rpartition("/")[2],
+            (*envs, *LABELS) if name in arguments.only else envs,
+        )
     wanted = {name.rpartition("/")[2] for name in arguments.only}
     is_there = {"sac": {name.rpartition("/")[2] for name in arguments.off_policy}, "pretrained": set(pretrained())}
     policies = [policy for policy in LABELS if policy in wanted or not wanted & set(LABELS)]
@@ -129,8 +139,14 @@ def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
         policy, _ = load_run(folder)
     # as registered, whatever arguments the environment had in training: returns are compared
     with Bar(f"evaluating {cell.name}") as bar:
-        result = evaluate(policy, cell.env_id, episodes=arguments.episodes, seed=arguments.evaluation_seed,
-                          n_threads=arguments.threads, show=bar.show)  # fmt: skip
+        result = evaluate(
+            policy,
+            cell.env_id,
+            episodes=arguments.episodes,
+            seed=arguments.evaluation_seed,
+            n_threads=arguments.threads,
+            show=bar.show,
+        )
     found = {
         **dataclasses.asdict(cell),
         "seconds": round(seconds, 1),
@@ -146,9 +162,21 @@ def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
 def train(cell: Cell, arguments: Arguments, folder: Path) -> float:
     """Run the command that trains or searches, in a folder of its own, and return how long it took [s]."""
     shutil.rmtree(folder, ignore_errors=True)
-    command = [sys.executable, "-m", "agents.search" if cell.policy == "cma" else "agents.train", "--env", cell.env_id,
-               "--seed", str(cell.seed), "--minutes", str(arguments.minutes), "--threads", str(arguments.threads),
-               "--folder", str(folder.resolve())]  # fmt: skip
+    command = [
+        sys.executable,
+        "-m",
+        "agents.search" if cell.policy == "cma" else "agents.train",
+        "--env",
+        cell.env_id,
+        "--seed",
+        str(cell.seed),
+        "--minutes",
+        str(arguments.minutes),
+        "--threads",
+        str(arguments.threads),
+        "--folder",
+        str(folder.resolve()),
+    ]
     if cell.policy != "cma":
         command += ["--algo", cell.policy, "--evaluations", "0", "--recordings", "0"]
     started = time.monotonic()

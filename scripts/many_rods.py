@@ -46,9 +46,8 @@ def rows(lib: Any, n_rods: int, contact: type | None = None) -> tuple[Any, list[
     tuple
         The simulator, not finalized, and the rods.
     """
-    class Simulator(
-        lib.BaseSystemCollection, lib.Constraints, lib.Forcing, lib.Connections, lib.Damping, lib.Contact
-    ):
+
+    class Simulator(lib.BaseSystemCollection, lib.Constraints, lib.Forcing, lib.Connections, lib.Damping, lib.Contact):
         pass
 
     simulator, rods = Simulator(), []
@@ -58,9 +57,16 @@ def rows(lib: Any, n_rods: int, contact: type | None = None) -> tuple[Any, list[
         direction = np.array([np.cos(slope), np.sin(slope), 0.0])
         middle = np.array([(place + 0.5) * LENGTH * np.cos(slope), 0.0, row * (2.0 * RADIUS - OVERLAP)])
         rod = lib.CosseratRod.straight_rod(
-            N_ELEMENTS, middle - 0.5 * LENGTH * direction, direction, np.array([0.0, 0.0, 1.0]), LENGTH, RADIUS, 1000.0,
-            youngs_modulus=1e6, shear_modulus=4e5,
-        )  # fmt: skip
+            N_ELEMENTS,
+            middle - 0.5 * LENGTH * direction,
+            direction,
+            np.array([0.0, 0.0, 1.0]),
+            LENGTH,
+            RADIUS,
+            1000.0,
+            youngs_modulus=1e6,
+            shear_modulus=4e5,
+        )
         simulator.append(rod)
         simulator.add_forcing_to(rod).using(lib.GravityForces, acc_gravity=np.array([0.0, -9.81, 0.0]))
         simulator.dampen(rod).using(lib.AnalyticalLinearDamper, uniform_damping_constant=1.0, time_step=DT)
@@ -110,8 +116,9 @@ def draw(counts: Sequence[int], times: np.ndarray, path: Path) -> None:
 
     figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
     for each, column, title, unit, scale in (
-        (axes[0], times[:, 1], "A step", "ms", 1e3), (axes[1], times[:, 0], "Declaring and finalizing", "s", 1.0),
-    ):  # fmt: skip
+        (axes[0], times[:, 1], "A step", "ms", 1e3),
+        (axes[1], times[:, 0], "Declaring and finalizing", "s", 1.0),
+    ):
         each.loglog(counts, scale * column, "o-", markersize=4, label="measured")
         proportional = scale * np.median(column / counts) * np.array(counts)
         each.loglog(counts, proportional, color="black", linewidth=1.0, linestyle="--", label="proportional")
@@ -133,8 +140,10 @@ def main() -> None:
     measure(4)
     times = np.array([measure(n) for n in track(arguments.rods, "measuring")])
     for n, (assembly, step) in zip(arguments.rods, times, strict=True):
-        print(f"{n:6d} rods: {1e6 * step:9.1f} us a step, {1e6 * step / n:.2f} us a rod; "
-              f"{assembly:.2f} s to declare and finalize, {1e3 * assembly / n:.2f} ms a rod")  # fmt: skip
+        print(
+            f"{n:6d} rods: {1e6 * step:9.1f} us a step, {1e6 * step / n:.2f} us a rod; "
+            f"{assembly:.2f} s to declare and finalize, {1e3 * assembly / n:.2f} ms a rod"
+        )
     draw(arguments.rods, times, arguments.out)
     print(f"the curve is in {arguments.out}")
 

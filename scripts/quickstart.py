@@ -41,10 +41,28 @@ def main() -> None:
     check_bounds(dataclasses.asdict(arguments), {"minutes": 0.001, "seed": 0, "episodes": 1, "evaluation_seed": 0})
     console = Console()
     folder = arguments.out / ENV.split("/")[1] / f"quickstart-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
-    console.print(f"A snake of 50 elements learns to crawl: PPO for {arguments.minutes:g} minutes. "
-                  "Ctrl-C saves and says how to go on.", highlight=False)  # fmt: skip
-    command = [sys.executable, "-m", "agents.train", "--env", ENV, "--algo", "ppo", "--seed", str(arguments.seed),
-               "--minutes", str(arguments.minutes), "--evaluations", "8", "--folder", str(folder)]  # fmt: skip
+    console.print(
+        f"A snake of 50 elements learns to crawl: PPO for {arguments.minutes:g} minutes. "
+        "Ctrl-C saves and says how to go on.",
+        highlight=False,
+    )
+    command = [
+        sys.executable,
+        "-m",
+        "agents.train",
+        "--env",
+        ENV,
+        "--algo",
+        "ppo",
+        "--seed",
+        str(arguments.seed),
+        "--minutes",
+        str(arguments.minutes),
+        "--evaluations",
+        "8",
+        "--folder",
+        str(folder),
+    ]
     status = subprocess.run(command, cwd=ROOT).returncode
     if status != 0:
         sys.exit(status)
@@ -58,8 +76,12 @@ def compare(console: Console, folder: Path, arguments: Arguments) -> None:
     from elastica_gym.rl.policies import baseline, load_run
     from elastica_gym.rl.run_files import BEST
 
-    policies = {"trained": load_run(ROOT / folder / BEST)[0], "published gait": baseline("seed_gait"),
-                "random": baseline("random"), "zero": baseline("zero")}  # fmt: skip
+    policies = {
+        "trained": load_run(ROOT / folder / BEST)[0],
+        "published gait": baseline("seed_gait"),
+        "random": baseline("random"),
+        "zero": baseline("zero"),
+    }
     table = Table(title=f"{ENV}, {arguments.episodes} unseen seeds")
     for column in ("policy", "distance in 10 s (m)", "95 % interval", "return"):
         table.add_column(column, justify="left" if column == "policy" else "right")
@@ -77,8 +99,11 @@ def show_where(console: Console, folder: Path) -> None:
     lines = [f"learning curve   {curve}"]
     for recording in recordings:
         shown = recording.relative_to(ROOT) if recording.is_relative_to(ROOT) else recording
-        lines += [f"recording        {shown}", f"  look at it     .venv/bin/python scripts/replay.py {shown}",
-                  f"  in a browser   .venv/bin/python scripts/replay.py {shown} --web"]  # fmt: skip
+        lines += [
+            f"recording        {shown}",
+            f"  look at it     .venv/bin/python scripts/replay.py {shown}",
+            f"  in a browser   .venv/bin/python scripts/replay.py {shown} --web",
+        ]
     lines.append(f"train on         .venv/bin/python -m agents.train --resume {folder} --minutes 20")
     console.print("\n".join(lines), soft_wrap=True, highlight=False)
 

@@ -46,9 +46,13 @@ def main() -> int:
         if folder is not None:
             make_folder(folder)
     result = judge(
-        arguments.policy, arguments.env, targets=arguments.targets, target_seed=arguments.target_seed,
-        record=arguments.record, n_threads=arguments.threads,
-    )  # fmt: skip
+        arguments.policy,
+        arguments.env,
+        targets=arguments.targets,
+        target_seed=arguments.target_seed,
+        record=arguments.record,
+        n_threads=arguments.threads,
+    )
     print_score(result)
     if arguments.json is not None:
         arguments.json.write_text(json.dumps({**result, **machine.describe()}, indent=2) + "\n")

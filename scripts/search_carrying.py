@@ -138,8 +138,9 @@ def actions_of(batch: Any, gaits: list[Gait]) -> np.ndarray:
     sight, time = see(batch.observations), batch.elapsed * batch.control_dt
     arm = np.where(sight.ahead >= 0.0, 1, 0)
     parts = np.split(np.arange(batch.num_envs), len(gaits))
-    return np.concatenate([carry(sight.goal[part], time[part], arm[part], gait)
-                           for gait, part in zip(gaits, parts, strict=True)])  # fmt: skip
+    return np.concatenate(
+        [carry(sight.goal[part], time[part], arm[part], gait) for gait, part in zip(gaits, parts, strict=True)]
+    )
 
 
 def main() -> None:
@@ -154,22 +155,27 @@ def main() -> None:
     arguments = tyro.cli(Arguments, description=__doc__)
     check_bounds(dataclasses.asdict(arguments), LOWEST)
     if max(arguments.grabs, arguments.population * arguments.trials) > MOST:
-        raise BadInputError(f"grabs, and population times trials, must be at most {MOST}, got {arguments.grabs}, and "
-                            f"{arguments.population * arguments.trials}")  # fmt: skip
+        raise BadInputError(
+            f"grabs, and population times trials, must be at most {MOST}, got {arguments.grabs}, and "
+            f"{arguments.population * arguments.trials}"
+        )
     make_folder(arguments.out.parent)
     begin = grabs(arguments)
     if len(begin) < arguments.trials:
-        raise BadInputError(f"trials must be at most the octopuses that have grabbed their object, {len(begin)} of "
-                            f"{arguments.grabs}, got {arguments.trials}: ask for more grabs")  # fmt: skip
+        raise BadInputError(
+            f"trials must be at most the octopuses that have grabbed their object, {len(begin)} of "
+            f"{arguments.grabs}, got {arguments.trials}: ask for more grabs"
+        )
     batch = make(arguments.population * arguments.trials, arguments)
     batch.reset(seed=arguments.seed)
     rng, start = np.random.default_rng(arguments.seed), numbers_of(HOMEWARD)
     # the period is a tenth of what the rest is
     spread = np.where(np.arange(len(start)) == 27, 0.05, 1.0)
     strategy = cma.CMAEvolutionStrategy(
-        start, arguments.sigma,
+        start,
+        arguments.sigma,
         {"popsize": arguments.population, "CMA_stds": spread, "seed": 1 + arguments.seed, "verbose": -9},
-    )  # fmt: skip
+    )
     with Bar("searching") as bar:
         for generation in range(1, arguments.generations + 1):
             candidates = strategy.ask()

@@ -98,12 +98,38 @@ def main() -> None:
     trained = out / "trained"
     # what an earlier tour has trained
     shutil.rmtree(trained, ignore_errors=True)
-    run("-m", "agents.train", "--env", arguments.env, "--algo", "ppo", "--config", ROOT / "configs" / "imitation.yml",
-        "--start-from", arguments.start_from, "--steps", 0, "--imitate", arguments.imitate, "--evaluations", 0,
-        "--folder", trained)  # fmt: skip
+    run(
+        "-m",
+        "agents.train",
+        "--env",
+        arguments.env,
+        "--algo",
+        "ppo",
+        "--config",
+        ROOT / "configs" / "imitation.yml",
+        "--start-from",
+        arguments.start_from,
+        "--steps",
+        0,
+        "--imitate",
+        arguments.imitate,
+        "--evaluations",
+        0,
+        "--folder",
+        trained,
+    )
     for path in (Path(__file__), trained):
-        run(ROOT / "scripts" / "score.py", "--env", arguments.env, "--targets", arguments.targets, "--policy", path,
-            "--json", out / f"{path.stem}.json")  # fmt: skip
+        run(
+            ROOT / "scripts" / "score.py",
+            "--env",
+            arguments.env,
+            "--targets",
+            arguments.targets,
+            "--policy",
+            path,
+            "--json",
+            out / f"{path.stem}.json",
+        )
 
 
 def show(arguments: Arguments, out: Path) -> None:

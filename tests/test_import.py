@@ -15,8 +15,10 @@ def test_import_brings_none_of_the_heavy_ones():
 
 def test_import_takes_less_than_half_a_second_beyond_what_it_needs():
     """In CPU time, and the least of a few, which on a busy machine is near to what it would be on an idle one."""
-    code = "import time, numpy, numba, gymnasium; t = time.process_time(); import elastica_gym; " \
-        "print(time.process_time() - t)"  # fmt: skip
+    code = (
+        "import time, numpy, numba, gymnasium; t = time.process_time(); import elastica_gym; "
+        "print(time.process_time() - t)"
+    )
     command = [sys.executable, "-c", code]
     taken = [float(subprocess.run(command, capture_output=True, text=True, check=True).stdout) for _ in range(3)]
     assert min(taken) < 0.5

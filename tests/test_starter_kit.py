@@ -18,8 +18,13 @@ SCRIPTS = ROOT / "scripts"
 @pytest.fixture
 def small(monkeypatch, tmp_path):
     """Make the notebook's work small: where it writes, a short video, few targets, a short training."""
-    for name, value in {"OUT": tmp_path, "SECONDS": 0.5, "TARGETS": 1, "STEPS": 40,
-                        "TRAIN": "--n-envs 2 --set n_steps=20 batch_size=20 n_epochs=2"}.items():  # fmt: skip
+    for name, value in {
+        "OUT": tmp_path,
+        "SECONDS": 0.5,
+        "TARGETS": 1,
+        "STEPS": 40,
+        "TRAIN": "--n-envs 2 --set n_steps=20 batch_size=20 n_epochs=2",
+    }.items():
         monkeypatch.setenv(f"STARTER_KIT_{name}", str(value))
     monkeypatch.setenv("COLUMNS", "200")
     return tmp_path

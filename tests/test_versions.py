@@ -25,7 +25,9 @@ def test_ranges_are_those_of_the_project():
     versions.require_within(ranges, {**INSTALLED, "numpy": np.__version__, "numba": numba.__version__})
     # pip turns them around
     assert versions._ranges(["numba<0.69,>=0.62", "torch>=2.3; extra == 'train'", "numpy>=2.0"]) == {
-        "numba": "<0.69,>=0.62", "numpy": ">=2.0"}  # fmt: skip
+        "numba": "<0.69,>=0.62",
+        "numpy": ">=2.0",
+    }
 
 
 @pytest.mark.parametrize("numba", ["0.62", "0.62.0", "0.62.1", "0.68.1", "0.68.2rc1"])

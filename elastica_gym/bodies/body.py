@@ -145,10 +145,14 @@ class Pose(NamedTuple):
 def make_pose(n_envs: int, n_objects: int) -> Pose:
     """Allocate a Pose."""
     return Pose(
-        centre=np.zeros((n_envs, 3)), heading=np.zeros((n_envs, 2)),
-        head=np.zeros((n_envs, 3)), upright=np.zeros(n_envs), objects=np.zeros((n_envs, n_objects, 3)),
-        gaps=np.zeros((n_envs, n_objects)), sound=np.ones(n_envs, dtype=np.int64),
-    )  # fmt: skip
+        centre=np.zeros((n_envs, 3)),
+        heading=np.zeros((n_envs, 2)),
+        head=np.zeros((n_envs, 3)),
+        upright=np.zeros(n_envs),
+        objects=np.zeros((n_envs, n_objects, 3)),
+        gaps=np.zeros((n_envs, n_objects)),
+        sound=np.ones(n_envs, dtype=np.int64),
+    )
 
 
 @stage

@@ -67,14 +67,30 @@ def grip(body: Body, state: State) -> Grip:
     thing, n_envs = body.model.cylinders, len(state.x)
     gaps = np.zeros((n_envs, int(body.model.n_elements[0])))
     spans, windings, counts = np.zeros((n_envs, 2)), np.zeros((n_envs, 2)), np.zeros((n_envs, 2), dtype=np.int64)
-    _measure(state.x, body.model.contact_radius, first, arms, state.body_x, state.body_Q, float(thing.length[0]),
-             float(thing.radius[0]), gaps, spans, windings, counts)  # fmt: skip
+    _measure(
+        state.x,
+        body.model.contact_radius,
+        first,
+        arms,
+        state.body_x,
+        state.body_Q,
+        float(thing.length[0]),
+        float(thing.radius[0]),
+        gaps,
+        spans,
+        windings,
+        counts,
+    )
     centre, axis = state.body_x[:, 0], state.body_Q[:, 0, 2]
     return Grip(
-        gaps=gaps, head_gap=gaps[:, arms[0, 1] : arms[1, 0]].min(axis=1), spans=spans, windings=windings,
-        counts=counts, base=centre - 0.5 * thing.length[0] * axis,
+        gaps=gaps,
+        head_gap=gaps[:, arms[0, 1] : arms[1, 0]].min(axis=1),
+        spans=spans,
+        windings=windings,
+        counts=counts,
+        base=centre - 0.5 * thing.length[0] * axis,
         tilt=np.arctan2(np.hypot(axis[:, 0], axis[:, 2]), axis[:, 1]),
-    )  # fmt: skip
+    )
 
 
 @functools.lru_cache(maxsize=4)

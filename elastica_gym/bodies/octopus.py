@@ -101,30 +101,59 @@ def octopus() -> Body:
     that is dragged.
     """
     limp = Rod.through(
-        nodes(), normal=(0.0, 1.0, 0.0), radius=radii(), density=DENSITY, youngs_modulus=YOUNGS_MODULUS,
-        shear_modulus=SHEAR_MODULUS, damping_rate=DAMPING_RATE, torque_viscosity=TORQUE_VISCOSITY,
-    )  # fmt: skip
+        nodes(),
+        normal=(0.0, 1.0, 0.0),
+        radius=radii(),
+        density=DENSITY,
+        youngs_modulus=YOUNGS_MODULUS,
+        shear_modulus=SHEAR_MODULUS,
+        damping_rate=DAMPING_RATE,
+        torque_viscosity=TORQUE_VISCOSITY,
+    )
     rod = replace(limp, rest_kappa=limp.curvature)
     ground = Plane(
-        stiffness=1e5, damping=50.0, kinetic_friction=(KINETIC_FRICTION,) * 3, static_friction=(STATIC_FRICTION,) * 3,
+        stiffness=1e5,
+        damping=50.0,
+        kinetic_friction=(KINETIC_FRICTION,) * 3,
+        static_friction=(STATIC_FRICTION,) * 3,
         slip_tolerance=1e-3,
-    )  # fmt: skip
+    )
     thing = Cylinder(
-        start=(0.0, 0.0, 0.4), direction=(0.0, 1.0, 0.0), normal=(1.0, 0.0, 0.0), length=OBJECT_LENGTH,
-        radius=OBJECT_RADIUS, mass=OBJECT_MASS, rods=SKIN, ground_stiffness=2e4, ground_damping=100.0,
+        start=(0.0, 0.0, 0.4),
+        direction=(0.0, 1.0, 0.0),
+        normal=(1.0, 0.0, 0.0),
+        length=OBJECT_LENGTH,
+        radius=OBJECT_RADIUS,
+        mass=OBJECT_MASS,
+        rods=SKIN,
+        ground_stiffness=2e4,
+        ground_damping=100.0,
         ground_friction=OBJECT_FRICTION,
-    )  # fmt: skip
+    )
     model = build_model(
-        [rod], planes=[ground], cylinders=[thing], rod_contact=SKIN, gravity=(0.0, -GRAVITY, 0.0),
-        activation_time=OCTOPUS.activation_time, is_balanced=True, is_reciprocal=True,
-    )  # fmt: skip
+        [rod],
+        planes=[ground],
+        cylinders=[thing],
+        rod_contact=SKIN,
+        gravity=(0.0, -GRAVITY, 0.0),
+        activation_time=OCTOPUS.activation_time,
+        is_balanced=True,
+        is_reciprocal=True,
+    )
     start = int(model.first_slot[0])
     return Body(
-        name="octopus", rods=(rod,), cylinders=(thing,), model=model, muscles=OCTOPUS, arms=("first", "second"),
+        name="octopus",
+        rods=(rod,),
+        cylinders=(thing,),
+        model=model,
+        muscles=OCTOPUS,
+        arms=("first", "second"),
         mirror=Mirror(across="forward", arms=("first", "second")),
-        couples=couples_of(OCTOPUS, rod, model), sim_dt=SIM_DT,
-        settling=1.0, senses=_senses(start, float(rod.nodal_mass.sum() * GRAVITY)),
-    )  # fmt: skip
+        couples=couples_of(OCTOPUS, rod, model),
+        sim_dt=SIM_DT,
+        settling=1.0,
+        senses=_senses(start, float(rod.nodal_mass.sum() * GRAVITY)),
+    )
 
 
 def _senses(start: int, weight: float) -> Senses:
@@ -135,6 +164,12 @@ def _senses(start: int, weight: float) -> Senses:
         nodes=start + np.concatenate([arm_nodes, [MIDDLE], last - arm_nodes[::-1]]),
         joints=start + np.concatenate([arm_joints, last - 2 - arm_joints[::-1]]),
         skin=start + np.concatenate([skin, last - skin[::-1]]),
-        front=np.array([start + MIDDLE + 1, start + HEAD[1]]), rear=np.array([start + HEAD[0], start + MIDDLE - 1]),
-        head=start + MIDDLE, crown=start + MIDDLE, length=LENGTH, curvature_scale=10.0, weight=weight, fastest=50.0,
-    )  # fmt: skip
+        front=np.array([start + MIDDLE + 1, start + HEAD[1]]),
+        rear=np.array([start + HEAD[0], start + MIDDLE - 1]),
+        head=start + MIDDLE,
+        crown=start + MIDDLE,
+        length=LENGTH,
+        curvature_scale=10.0,
+        weight=weight,
+        fastest=50.0,
+    )

@@ -61,26 +61,41 @@ def snake(n_elements: int = 50) -> Body:
     if n_elements < 16:
         raise ValueError(f"n_elements must be at least 16, not {n_elements}")
     rod = Rod.straight(
-        n_elements, start=(-0.5 * LENGTH, RADIUS, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0),
-        length=LENGTH, radius=RADIUS, density=DENSITY, youngs_modulus=YOUNGS_MODULUS, shear_modulus=SHEAR_MODULUS,
-        viscosity=VISCOSITY, torque_viscosity=VISCOSITY,
-    )  # fmt: skip
+        n_elements,
+        start=(-0.5 * LENGTH, RADIUS, 0.0),
+        direction=(1.0, 0.0, 0.0),
+        normal=(0.0, 1.0, 0.0),
+        length=LENGTH,
+        radius=RADIUS,
+        density=DENSITY,
+        youngs_modulus=YOUNGS_MODULUS,
+        shear_modulus=SHEAR_MODULUS,
+        viscosity=VISCOSITY,
+        torque_viscosity=VISCOSITY,
+    )
     friction = (FRICTION, 1.5 * FRICTION, 2.0 * FRICTION)
     # friction is kinetic: the original's static coefficients are zero
-    ground = Plane(
-        stiffness=GROUND_STIFFNESS, damping=GROUND_DAMPING, kinetic_friction=friction, slip_tolerance=1e-8
-    )
+    ground = Plane(stiffness=GROUND_STIFFNESS, damping=GROUND_DAMPING, kinetic_friction=friction, slip_tolerance=1e-8)
     model = build_model(
-        [rod], planes=[ground], rod_contact=SKIN, gravity=(0.0, -GRAVITY, 0.0), activation_time=SNAKE.activation_time,
+        [rod],
+        planes=[ground],
+        rod_contact=SKIN,
+        gravity=(0.0, -GRAVITY, 0.0),
+        activation_time=SNAKE.activation_time,
         is_balanced=True,
-    )  # fmt: skip
+    )
     start = int(model.first_slot[0])
     return Body(
-        name="snake", rods=(rod,), model=model, muscles=SNAKE, arms=("front", "rear"),
+        name="snake",
+        rods=(rod,),
+        model=model,
+        muscles=SNAKE,
+        arms=("front", "rear"),
         mirror=Mirror(across="right", is_later=True),
-        couples=couples_of(SNAKE, rod, model), senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
+        couples=couples_of(SNAKE, rod, model),
+        senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
         sim_dt=min(SIM_DT, 0.94 * stable_time_step(rod)),
-    )  # fmt: skip
+    )
 
 
 def _senses(start: int, n: int, weight: float) -> Senses:
@@ -90,7 +105,15 @@ def _senses(start: int, n: int, weight: float) -> Senses:
         return start + np.round(np.linspace(first, last, count)).astype(np.int64)
 
     return Senses(
-        nodes=spread(0, n, 9), joints=spread(2, n - 4, 10), skin=spread(0, n, 9),
-        front=np.array([start + half, start + n]), rear=np.array([start, start + half]),
-        head=start + n, crown=start + n - 1, length=LENGTH, curvature_scale=10.0, weight=weight, fastest=10.0,
-    )  # fmt: skip
+        nodes=spread(0, n, 9),
+        joints=spread(2, n - 4, 10),
+        skin=spread(0, n, 9),
+        front=np.array([start + half, start + n]),
+        rear=np.array([start, start + half]),
+        head=start + n,
+        crown=start + n - 1,
+        length=LENGTH,
+        curvature_scale=10.0,
+        weight=weight,
+        fastest=10.0,
+    )

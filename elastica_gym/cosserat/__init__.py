@@ -161,6 +161,6 @@ __all__ = [
     "rotate",
     "save_state",
     "stable_time_step",
-]  # fmt: skip
+]
 
 __getattr__ = refuse_names(__name__)

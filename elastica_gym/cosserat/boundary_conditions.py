@@ -30,9 +30,13 @@ class ConstraintBase(ABC):
     """
 
     def __init__(
-        self, *args: Any, _system: Any = None, constrained_position_idx: Indices = (),
-        constrained_director_idx: Indices = (), **kwargs: Any,
-    ) -> None:  # fmt: skip
+        self,
+        *args: Any,
+        _system: Any = None,
+        constrained_position_idx: Indices = (),
+        constrained_director_idx: Indices = (),
+        **kwargs: Any,
+    ) -> None:
         if _system is not None:
             self._set_up(_system, constrained_position_idx, constrained_director_idx)
 
@@ -88,15 +92,20 @@ class GeneralConstraint(ConstraintBase):
     """
 
     def __init__(
-        self, *fixed_data: Array, translational_constraint_selector: ArrayLike | None = None,
-        rotational_constraint_selector: ArrayLike | None = None, **kwargs: Any,
-    ) -> None:  # fmt: skip
+        self,
+        *fixed_data: Array,
+        translational_constraint_selector: ArrayLike | None = None,
+        rotational_constraint_selector: ArrayLike | None = None,
+        **kwargs: Any,
+    ) -> None:
         super().__init__(**kwargs)
         self.fixed_positions = [np.array(each) for each in fixed_data if np.shape(each) == (3,)]
         self.fixed_directors = [np.array(each) for each in fixed_data if np.shape(each) == (3, 3)]
         if len(self.fixed_positions) + len(self.fixed_directors) != len(fixed_data):
-            raise ValueError("fixed_data must be positions of shape (3,) and directors of shape (3, 3), "
-                             f"not of {[np.shape(each) for each in fixed_data]}")  # fmt: skip
+            raise ValueError(
+                "fixed_data must be positions of shape (3,) and directors of shape (3, 3), "
+                f"not of {[np.shape(each) for each in fixed_data]}"
+            )
         self.translational_constraint_selector = _selector(
             "translational_constraint_selector", translational_constraint_selector
         )
@@ -175,9 +184,11 @@ class OneEndFixedBC(FixedConstraint):
 
     @staticmethod
     def compute_constrain_values(
-        position_collection: Array, fixed_position_collection: Array, director_collection: Array,
+        position_collection: Array,
+        fixed_position_collection: Array,
+        director_collection: Array,
         fixed_directors_collection: Array,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Put the first node and the first directors back."""
         position_collection[..., 0] = fixed_position_collection
         director_collection[..., 0] = fixed_directors_collection
@@ -208,9 +219,16 @@ class HelicalBucklingBC(ConstraintBase):
     """
 
     def __init__(
-        self, position_start: Array, position_end: Array, director_start: Array, director_end: Array,
-        twisting_time: float, slack: float, number_of_rotations: float, **kwargs: Any,
-    ) -> None:  # fmt: skip
+        self,
+        position_start: Array,
+        position_end: Array,
+        director_start: Array,
+        director_end: Array,
+        twisting_time: float,
+        slack: float,
+        number_of_rotations: float,
+        **kwargs: Any,
+    ) -> None:
         super().__init__(**kwargs)
         if not twisting_time > 0.0:
             raise ValueError(f"twisting_time must be a positive number, not {twisting_time}")
@@ -241,13 +259,16 @@ class HelicalBucklingBC(ConstraintBase):
 
     def lower(self, builder: SceneBuilder) -> None:
         """Write a row for each end's node and element."""
-        ends = ((0, 1.0, self.final_start_position, self.final_start_directors),
-                (-1, -1.0, self.final_end_position, self.final_end_directors))  # fmt: skip
+        ends = (
+            (0, 1.0, self.final_start_position, self.final_start_directors),
+            (-1, -1.0, self.final_end_position, self.final_end_directors),
+        )
         for index, sign, position, directors in ends:
             # about its own axis an element turns in both frames alike
             omega = sign * (self.system.director_collection[..., index] @ self.ang_vel)
-            builder.add_pin(self.system, index, position=position, start_time=self.twisting_time,
-                            velocity=sign * self.shrink_vel)  # fmt: skip
+            builder.add_pin(
+                self.system, index, position=position, start_time=self.twisting_time, velocity=sign * self.shrink_vel
+            )
             builder.add_clamp(self.system, index, directors=directors, start_time=self.twisting_time, omega=omega)
 
 

@@ -87,10 +87,17 @@ class ExportCallBack(CallBackBaseClass):
     FILE_SIZE_CUTOFF = 32_000_000
 
     def __init__(
-        self, step_skip: int, filename: str | None = None, directory: str | None = None, method: str | None = None,
-        initial_file_count: int = 0, file_save_interval: int = 100_000_000, *, path: str | None = None,
+        self,
+        step_skip: int,
+        filename: str | None = None,
+        directory: str | None = None,
+        method: str | None = None,
+        initial_file_count: int = 0,
+        file_save_interval: int = 100_000_000,
+        *,
+        path: str | None = None,
         save_every: float | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         if method is None and directory in self.AVAILABLE_METHOD:
             # the seed's order of arguments: step_skip, path, method
             directory, method = None, directory
@@ -207,8 +214,11 @@ def _append(lists: dict, system: Any, time: float, step: int) -> int:
     lists["time"].append(time)
     lists["step"].append(step)
     size = 0
-    for name, attribute in (("position", "position_collection"), ("directors", "director_collection"),
-                            ("velocity", "velocity_collection")):  # fmt: skip
+    for name, attribute in (
+        ("position", "position_collection"),
+        ("directors", "director_collection"),
+        ("velocity", "velocity_collection"),
+    ):
         values = getattr(system, attribute).copy()
         lists[name].append(values)
         size += sys.getsizeof(values)

@@ -62,12 +62,15 @@ class NoContact:
 
     def _check_systems_validity(self, system_one: Any, system_two: Any) -> None:
         """Raise TypeError unless these can touch in this way; subclasses override it, by its name in 1.0."""
-        for which, system, allowed in (("first", system_one, self._allowed_system_one),
-                                       ("second", system_two, self._allowed_system_two)):  # fmt: skip
+        for which, system, allowed in (
+            ("first", system_one, self._allowed_system_one),
+            ("second", system_two, self._allowed_system_two),
+        ):
             if not isinstance(system, tuple(allowed)):
                 names = " or ".join(each.__name__ for each in allowed)
-                raise TypeError(f"the {which} system of {type(self).__name__} must be a {names}, "
-                                f"not a {type(system).__name__}")  # fmt: skip
+                raise TypeError(
+                    f"the {which} system of {type(self).__name__} must be a {names}, not a {type(system).__name__}"
+                )
 
     def require_systems(self, system_one: Any, system_two: Any) -> None:
         """Raise TypeError unless these can touch in this way."""
@@ -169,9 +172,13 @@ class _RodOnBody(_Compiled):
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write a pair."""
         builder.add_body_contact(
-            system_one, system_two, stiffness=self.k, damping=self.nu, friction=self.friction_coefficient,
+            system_one,
+            system_two,
+            stiffness=self.k,
+            damping=self.nu,
+            friction=self.friction_coefficient,
             slip_damping=self.velocity_damping_coefficient,
-        )  # fmt: skip
+        )
 
 
 class RodCylinderContact(_RodOnBody):
@@ -208,8 +215,9 @@ class CylinderPlaneContact(_Press):
 
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write a plane."""
-        plane = surroundings.Plane(origin=_triple(system_two.origin), normal=_triple(system_two.normal),
-                                   stiffness=self.k, damping=self.nu)  # fmt: skip
+        plane = surroundings.Plane(
+            origin=_triple(system_two.origin), normal=_triple(system_two.normal), stiffness=self.k, damping=self.nu
+        )
         builder.add_body_plane(system_one, plane, self.friction_coefficient)
 
 
@@ -228,10 +236,17 @@ class _RodOnPlane(_Compiled):
 
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write a plane."""
-        builder.add_plane(system_one, surroundings.Plane(
-            origin=_triple(system_two.origin), normal=_triple(system_two.normal), stiffness=self.k, damping=self.nu,
-            surface_tolerance=self.surface_tol, **self._friction(),
-        ))  # fmt: skip
+        builder.add_plane(
+            system_one,
+            surroundings.Plane(
+                origin=_triple(system_two.origin),
+                normal=_triple(system_two.normal),
+                stiffness=self.k,
+                damping=self.nu,
+                surface_tolerance=self.surface_tol,
+                **self._friction(),
+            ),
+        )
 
 
 class RodPlaneContact(_RodOnPlane):
@@ -265,9 +280,14 @@ class RodPlaneContactWithAnisotropicFriction(_RodOnPlane):
     """
 
     def __init__(
-        self, k: float, nu: float, slip_velocity_tol: float, static_mu_array: ArrayLike, kinetic_mu_array: ArrayLike,
+        self,
+        k: float,
+        nu: float,
+        slip_velocity_tol: float,
+        static_mu_array: ArrayLike,
+        kinetic_mu_array: ArrayLike,
         surface_tol: float | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.k, self.nu, self.surface_tol = as_number("k", k), as_number("nu", nu), surface_tol
         self.slip_velocity_tol = as_number("slip_velocity_tol", slip_velocity_tol)
         self.static_mu_array = three("static_mu_array", static_mu_array).copy()

@@ -103,9 +103,13 @@ def _box(points, margin):
 
 @njit(cache=True)
 def _prune_using_aabbs_rod_rod(
-    rod_one_position_collection, rod_one_radius_collection, rod_one_length_collection, rod_two_position_collection,
-    rod_two_radius_collection, rod_two_length_collection,
-):  # fmt: skip
+    rod_one_position_collection,
+    rod_one_radius_collection,
+    rod_one_length_collection,
+    rod_two_position_collection,
+    rod_two_radius_collection,
+    rod_two_length_collection,
+):
     """Return 1 if the boxes about two rods are apart, 0 if not."""
     one = np.full(3, np.max(rod_one_radius_collection) + np.max(rod_one_length_collection))
     two = np.full(3, np.max(rod_two_radius_collection) + np.max(rod_two_length_collection))
@@ -114,9 +118,14 @@ def _prune_using_aabbs_rod_rod(
 
 @njit(cache=True)
 def _prune_using_aabbs_rod_cylinder(
-    rod_one_position_collection, rod_one_radius_collection, rod_one_length_collection, cylinder_position,
-    cylinder_director, cylinder_radius, cylinder_length,
-):  # fmt: skip
+    rod_one_position_collection,
+    rod_one_radius_collection,
+    rod_one_length_collection,
+    cylinder_position,
+    cylinder_director,
+    cylinder_radius,
+    cylinder_length,
+):
     """Return 1 if the boxes about a rod and a cylinder are apart, 0 if not.
 
     Unlike PyElastica's, the box of an oblique cylinder holds all of it.
@@ -131,9 +140,13 @@ def _prune_using_aabbs_rod_cylinder(
 
 @njit(cache=True)
 def _prune_using_aabbs_rod_sphere(
-    rod_one_position_collection, rod_one_radius_collection, rod_one_length_collection, sphere_position,
-    sphere_director, sphere_radius,
-):  # fmt: skip
+    rod_one_position_collection,
+    rod_one_radius_collection,
+    rod_one_length_collection,
+    sphere_position,
+    sphere_director,
+    sphere_radius,
+):
     """Return 1 if the boxes about a rod and a sphere are apart, 0 if not."""
     rod, sphere = np.full(3, np.max(rod_one_radius_collection)), np.full(3, sphere_radius)
     return _aabbs_not_intersecting(_box(sphere_position, sphere), _box(rod_one_position_collection, rod))

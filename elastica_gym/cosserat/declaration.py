@@ -47,8 +47,10 @@ class Declaration:
             If one has been given already.
         """
         if not (isinstance(cls, type) and issubclass(cls, self.base)):
-            raise TypeError(f"{getattr(cls, '__name__', cls)} cannot be used as a {self.what}: "
-                            f"it must be derived from {self.base.__name__}")  # fmt: skip
+            raise TypeError(
+                f"{getattr(cls, '__name__', cls)} cannot be used as a {self.what}: "
+                f"it must be derived from {self.base.__name__}"
+            )
         if self.cls is not None:
             raise RuntimeError(f"this {self.what} already uses {self.cls.__name__}; declare another for {cls.__name__}")
         known = known_keywords(cls)

@@ -53,24 +53,35 @@ class AnalyticalLinearDamper(DamperBase):
     """
 
     def __init__(
-        self, time_step: float | None = None, *, damping_constant: float | None = None,
-        uniform_damping_constant: float | None = None, translational_damping_constant: float | None = None,
-        rotational_damping_constant: float | None = None, **kwargs: Any,
-    ) -> None:  # fmt: skip
+        self,
+        time_step: float | None = None,
+        *,
+        damping_constant: float | None = None,
+        uniform_damping_constant: float | None = None,
+        translational_damping_constant: float | None = None,
+        rotational_damping_constant: float | None = None,
+        **kwargs: Any,
+    ) -> None:
         super().__init__(**kwargs)
         if time_step is not None and not time_step > 0.0:
             raise ValueError(f"time_step must be a positive number, not {time_step}")
         self.time_step = time_step
         given = {
-            "damping_constant": damping_constant, "uniform_damping_constant": uniform_damping_constant,
+            "damping_constant": damping_constant,
+            "uniform_damping_constant": uniform_damping_constant,
             "translational_damping_constant": translational_damping_constant,
             "rotational_damping_constant": rotational_damping_constant,
-        }  # fmt: skip
+        }
         chosen = {name: float(value) for name, value in given.items() if value is not None}
-        if set(chosen) not in ({"damping_constant"}, {"uniform_damping_constant"},
-                               {"translational_damping_constant", "rotational_damping_constant"}):  # fmt: skip
-            raise ValueError("give uniform_damping_constant, or translational_damping_constant and "
-                             f"rotational_damping_constant, or damping_constant; not {sorted(chosen) or 'none'}")
+        if set(chosen) not in (
+            {"damping_constant"},
+            {"uniform_damping_constant"},
+            {"translational_damping_constant", "rotational_damping_constant"},
+        ):
+            raise ValueError(
+                "give uniform_damping_constant, or translational_damping_constant and "
+                f"rotational_damping_constant, or damping_constant; not {sorted(chosen) or 'none'}"
+            )
         for name, value in chosen.items():
             require_not_negative(name, value)
         self._constants = chosen

@@ -20,9 +20,7 @@ WORTHWHILE = 100_000
 """Elements times steps that take some milliseconds: for less, threads cost more time than they save"""
 
 
-def simulate_systems(
-    systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]]
-) -> "Simulation | Ensemble":
+def simulate_systems(systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]]) -> "Simulation | Ensemble":
     """Return what simulates systems: on several CPUs if they fall into groups, and nothing calls Python often."""
     movers = [system for system in systems if isinstance(system, CosseratRod | RigidBodyBase)]
     callbacks = Callbacks(declared.get("callbacks", ()))
@@ -103,8 +101,11 @@ class Ensemble:
 def _groups(movers: Sequence[Any], features: Mapping[str, Sequence[Declaration]], n_most: int) -> list[list[Any]]:
     """Divide systems into groups of about the same size that no feature joins, at most so many."""
     place = {id(system): number for number, system in enumerate(movers)}
-    joined = [[place[id(system)] for system in declaration.systems if id(system) in place]
-              for each in features.values() for declaration in each]  # fmt: skip
+    joined = [
+        [place[id(system)] for system in declaration.systems if id(system) in place]
+        for each in features.values()
+        for declaration in each
+    ]
     pairs = np.array([pair for pair in joined if len(pair) == 2], dtype=np.int64).reshape(-1, 2)
     graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(movers), len(movers)))
     count, label = connected_components(graph, directed=False)
@@ -123,8 +124,10 @@ def _groups(movers: Sequence[Any], features: Mapping[str, Sequence[Declaration]]
 def _of(group: Sequence[Any], features: Mapping[str, Sequence[Declaration]]) -> dict[str, list[Declaration]]:
     """Return the features of a group's systems."""
     inside = {id(system) for system in group}
-    return {feature: [one for one in each if any(id(system) in inside for system in one.systems)]
-            for feature, each in features.items()}  # fmt: skip
+    return {
+        feature: [one for one in each if any(id(system) in inside for system in one.systems)]
+        for feature, each in features.items()
+    }
 
 
 def _size(system: Any) -> int:

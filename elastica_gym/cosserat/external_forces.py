@@ -73,9 +73,7 @@ class EndpointForces(NoForces):
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Add the forces at the ends."""
-        self.compute_end_point_forces(
-            system.external_forces, self.start_force, self.end_force, time, self.ramp_up_time
-        )
+        self.compute_end_point_forces(system.external_forces, self.start_force, self.end_force, time, self.ramp_up_time)
 
     @staticmethod
     def compute_end_point_forces(
@@ -110,9 +108,13 @@ class EndpointForcesSinusoidal(NoForces):
     """
 
     def __init__(
-        self, start_force_mag: float, end_force_mag: float, ramp_up_time: float = 0.0,
-        tangent_direction: ArrayLike = (0.0, 0.0, 1.0), normal_direction: ArrayLike = (0.0, 1.0, 0.0),
-    ) -> None:  # fmt: skip
+        self,
+        start_force_mag: float,
+        end_force_mag: float,
+        ramp_up_time: float = 0.0,
+        tangent_direction: ArrayLike = (0.0, 0.0, 1.0),
+        normal_direction: ArrayLike = (0.0, 1.0, 0.0),
+    ) -> None:
         require_not_negative("ramp_up_time", ramp_up_time)
         self.start_force_mag = as_number("start_force_mag", start_force_mag)
         self.end_force_mag = as_number("end_force_mag", end_force_mag)
@@ -132,9 +134,14 @@ class EndpointForcesSinusoidal(NoForces):
         """Write a row for each end."""
         for index, size in ((0, self.start_force_mag), (-1, self.end_force_mag)):
             builder.add_point_load(
-                system, index, ramp_time=self.ramp_up_time, before=-2.0 * size * self.normal_direction,
-                cosine=size * self.roll_direction, sine=size * self.normal_direction, angular_frequency=0.5 * np.pi,
-            )  # fmt: skip
+                system,
+                index,
+                ramp_time=self.ramp_up_time,
+                before=-2.0 * size * self.normal_direction,
+                cosine=size * self.roll_direction,
+                sine=size * self.normal_direction,
+                angular_frequency=0.5 * np.pi,
+            )
 
 
 class UniformForces(NoForces):
@@ -195,8 +202,14 @@ class ReciprocalTension(NoForces):
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Pull the nodes of each element together."""
         s, k, w = system.sigma - system.rest_sigma, system.kappa - system.rest_kappa, system.omega_collection
-        shear, bend, spin = (np.einsum("ik,ijk,jk->k", a, matrix, a) for a, matrix in (
-            (s, system.shear_matrix), (k, system.bend_matrix), (w, system.mass_second_moment_of_inertia)))  # fmt: skip
+        shear, bend, spin = (
+            np.einsum("ik,ijk,jk->k", a, matrix, a)
+            for a, matrix in (
+                (s, system.shear_matrix),
+                (k, system.bend_matrix),
+                (w, system.mass_second_moment_of_inertia),
+            )
+        )
         bend *= 0.75 / system.voronoi_dilatation**4
         # a joint is between two elements; a ring's last is that before its first element
         around = bend + np.roll(bend, 1) if system.ring_rod_flag else np.append(bend, 0.0) + np.append(0.0, bend)
@@ -243,9 +256,17 @@ class MuscleTorques(NoForces):
     """
 
     def __init__(
-        self, base_length: float, b_coeff: ArrayLike, period: float, wave_number: float, phase_shift: float,
-        direction: ArrayLike, rest_lengths: ArrayLike, ramp_up_time: float = 0.0, with_spline: bool = False,
-    ) -> None:  # fmt: skip
+        self,
+        base_length: float,
+        b_coeff: ArrayLike,
+        period: float,
+        wave_number: float,
+        phase_shift: float,
+        direction: ArrayLike,
+        rest_lengths: ArrayLike,
+        ramp_up_time: float = 0.0,
+        with_spline: bool = False,
+    ) -> None:
         require_positive("period", period)
         require_not_negative("ramp_up_time", ramp_up_time)
         lengths, coefficients = as_numbers("rest_lengths", rest_lengths), np.atleast_1d(as_numbers("b_coeff", b_coeff))
@@ -266,15 +287,31 @@ class MuscleTorques(NoForces):
     def apply_torques(self, system: Any, time: float = 0.0) -> None:
         """Add each couple to the element behind it, and its opposite to the one before."""
         self.compute_muscle_torques(
-            time, self.my_spline, self.s, self.angular_frequency, self.wave_number, self.phase_shift,
-            self.ramp_up_time, self.direction, system.director_collection, system.external_torques,
-        )  # fmt: skip
+            time,
+            self.my_spline,
+            self.s,
+            self.angular_frequency,
+            self.wave_number,
+            self.phase_shift,
+            self.ramp_up_time,
+            self.direction,
+            system.director_collection,
+            system.external_torques,
+        )
 
     @staticmethod
     def compute_muscle_torques(
-        time: float, my_spline: Array, s: Array, angular_frequency: float, wave_number: float, phase_shift: float,
-        ramp_up_time: float, direction: Array, director_collection: Array, external_torques: Array,
-    ) -> None:  # fmt: skip
+        time: float,
+        my_spline: Array,
+        s: Array,
+        angular_frequency: float,
+        wave_number: float,
+        phase_shift: float,
+        ramp_up_time: float,
+        direction: Array,
+        director_collection: Array,
+        external_torques: Array,
+    ) -> None:
         """Add each couple to the torque, (3, n), of the element behind it, and its opposite to the one before."""
         growth = min(1.0, time / ramp_up_time) if ramp_up_time > 0.0 else 1.0
         sine, cosine = wave_profiles(s, my_spline, wave_number, phase_shift)
@@ -287,8 +324,14 @@ class MuscleTorques(NoForces):
         if self.s.size != system.n_elems:
             raise ValueError(f"rest_lengths must be {system.n_elems} numbers, one for each element, not {self.s.size}")
         sine, cosine = self.profiles()
-        builder.add_wave(system, axis=self.direction, angular_frequency=self.angular_frequency,
-                         ramp_time=self.ramp_up_time, sine=sine, cosine=cosine)  # fmt: skip
+        builder.add_wave(
+            system,
+            axis=self.direction,
+            angular_frequency=self.angular_frequency,
+            ramp_time=self.ramp_up_time,
+            sine=sine,
+            cosine=cosine,
+        )
 
 
 def inplace_addition(external_force_or_torque: Array, force_or_torque: Array) -> None:

@@ -52,9 +52,13 @@ class InteractionPlane(NoForces):
     def plane(self) -> surroundings.Plane:
         """The plane as the compiled step knows it."""
         return surroundings.Plane(
-            stiffness=self.k, damping=self.nu, origin=_triple(self.plane_origin), normal=_triple(self.plane_normal),
-            surface_tolerance=self.surface_tol, **self._friction(),
-        )  # fmt: skip
+            stiffness=self.k,
+            damping=self.nu,
+            origin=_triple(self.plane_origin),
+            normal=_triple(self.plane_normal),
+            surface_tolerance=self.surface_tol,
+            **self._friction(),
+        )
 
     def _friction(self) -> dict[str, Any]:
         return {}
@@ -96,9 +100,16 @@ class AnisotropicFrictionalPlane(InteractionPlane):
     """
 
     def __init__(
-        self, k: float, nu: float, plane_origin: ArrayLike, plane_normal: ArrayLike, slip_velocity_tol: float,
-        static_mu_array: ArrayLike, kinetic_mu_array: ArrayLike, surface_tol: float | None = None,
-    ) -> None:  # fmt: skip
+        self,
+        k: float,
+        nu: float,
+        plane_origin: ArrayLike,
+        plane_normal: ArrayLike,
+        slip_velocity_tol: float,
+        static_mu_array: ArrayLike,
+        kinetic_mu_array: ArrayLike,
+        surface_tol: float | None = None,
+    ) -> None:
         self.slip_velocity_tol = as_number("slip_velocity_tol", slip_velocity_tol)
         self.static_mu_array = three("static_mu_array", static_mu_array).copy()
         self.kinetic_mu_array = three("kinetic_mu_array", kinetic_mu_array).copy()
@@ -123,8 +134,14 @@ class SlenderBodyTheory(NoForces):
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
         """Add -4 pi mu l/ln(L/r) (I - t t^T/2) v on each element, half of it to each node."""
-        force = slender_body_forces(system.tangents, system.velocity_collection, self.dynamic_viscosity,
-                                    system.lengths, system.radius, system.mass)  # fmt: skip
+        force = slender_body_forces(
+            system.tangents,
+            system.velocity_collection,
+            self.dynamic_viscosity,
+            system.lengths,
+            system.radius,
+            system.mass,
+        )
         elements_to_nodes_inplace(force, system.external_forces)
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
@@ -136,8 +153,13 @@ class SlenderBodyTheory(NoForces):
 
 def friction_of(law: Any) -> dict[str, Any]:
     """Return the anisotropic friction of a plane in PyElastica's names, in those of `surroundings.Plane`."""
-    return {"slip_tolerance": law.slip_velocity_tol, "static_friction": _triple(law.static_mu_array),
-            "kinetic_friction": _triple(law.kinetic_mu_array)}  # fmt: skip
+    return {
+        "slip_tolerance": law.slip_velocity_tol,
+        "static_friction": _triple(law.static_mu_array),
+        "kinetic_friction": _triple(law.kinetic_mu_array),
+    }
+
+
 def slender_body_forces(
     tangents: Array, velocity_collection: Array, dynamic_viscosity: float, lengths: Array, radius: Array, mass: Array
 ) -> Array:

@@ -35,9 +35,7 @@ class ConnectionBase(ABC):
     """
 
     @abstractmethod
-    def apply_forces(
-        self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
-    ) -> None:
+    def apply_forces(self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0) -> None:
         """Add forces at the connected nodes."""
 
     @abstractmethod
@@ -61,12 +59,12 @@ class FreeJoint(ConnectionBase):
     def __init__(self, k: float, nu: float) -> None:
         self.k, self.nu = as_number("k", k), as_number("nu", nu)
 
-    def apply_forces(
-        self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
-    ) -> None:
+    def apply_forces(self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0) -> None:
         """Add k (x2 - x1) + nu (v2 - v1) to one, and its opposite to two."""
-        x, v = (getattr(system_two, name)[..., index_two] - getattr(system_one, name)[..., index_one]
-                for name in ("position_collection", "velocity_collection"))  # fmt: skip
+        x, v = (
+            getattr(system_two, name)[..., index_two] - getattr(system_one, name)[..., index_one]
+            for name in ("position_collection", "velocity_collection")
+        )
         force = self.k * x + self.nu * v
         system_one.external_forces[..., index_one] += force
         system_two.external_forces[..., index_two] -= force
@@ -152,8 +150,14 @@ class FixedJoint(FreeJoint):
 
     def lower(self, builder: SceneBuilder, ends: End) -> None:
         """Write a joint."""
-        builder.add_joint(ends, stiffness=self.k, damping=self.nu, turn_stiffness=self.kt, turn_damping=self.nut,
-                          rest_rotation=self.rest_rotation_matrix)  # fmt: skip
+        builder.add_joint(
+            ends,
+            stiffness=self.k,
+            damping=self.nu,
+            turn_stiffness=self.kt,
+            turn_damping=self.nut,
+            rest_rotation=self.rest_rotation_matrix,
+        )
 
 
 class _ContactAsJoint(FreeJoint):
@@ -161,9 +165,7 @@ class _ContactAsJoint(FreeJoint):
 
     IS_COMPILED = True
 
-    def apply_forces(
-        self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
-    ) -> None:
+    def apply_forces(self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0) -> None:
         """Add forces and torques, as the compiled step does."""
         self.contact_with(system_two).apply_contact(system_one, system_two, time)
 

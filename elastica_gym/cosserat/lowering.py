@@ -127,10 +127,17 @@ class SceneBuilder:
     # loads
 
     def add_point_load(
-        self, system: Any, index: int, *, ramp_time: float = 0.0, growing: ArrayLike = (0.0, 0.0, 0.0),
-        before: ArrayLike = (0.0, 0.0, 0.0), cosine: ArrayLike = (0.0, 0.0, 0.0), sine: ArrayLike = (0.0, 0.0, 0.0),
+        self,
+        system: Any,
+        index: int,
+        *,
+        ramp_time: float = 0.0,
+        growing: ArrayLike = (0.0, 0.0, 0.0),
+        before: ArrayLike = (0.0, 0.0, 0.0),
+        cosine: ArrayLike = (0.0, 0.0, 0.0),
+        sine: ArrayLike = (0.0, 0.0, 0.0),
         angular_frequency: float = 0.0,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Add a force on a node; `PointLoads` says what the arguments mean."""
         vectors = [np.ravel(v) for v in (growing, before, cosine, sine)]
         self._point_loads.append((self.node(system, index), ramp_time, *vectors, angular_frequency))
@@ -190,46 +197,89 @@ class SceneBuilder:
     # joints and constraints
 
     def add_joint(
-        self, ends: tuple[Any, int, Any, int], *, stiffness: float, damping: float, hinge_stiffness: float = 0.0,
-        axis: ArrayLike = (0.0, 0.0, 0.0), turn_stiffness: float = 0.0, turn_damping: float = 0.0,
+        self,
+        ends: tuple[Any, int, Any, int],
+        *,
+        stiffness: float,
+        damping: float,
+        hinge_stiffness: float = 0.0,
+        axis: ArrayLike = (0.0, 0.0, 0.0),
+        turn_stiffness: float = 0.0,
+        turn_damping: float = 0.0,
         rest_rotation: ArrayLike | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Add a joint between two systems and indices; `Joints` says what the arguments mean."""
         one, i, two, j = ends
         turns = hinge_stiffness != 0.0 or turn_stiffness != 0.0 or turn_damping != 0.0
         elements = (self.element(one, i), self.element(two, j)) if turns else (0, 0)
-        self._joints.append((
-            (self.node(one, i), self.node(two, j)), elements, stiffness, damping, hinge_stiffness, np.ravel(axis),
-            turn_stiffness, turn_damping, np.eye(3) if rest_rotation is None else rest_rotation,
-        ))  # fmt: skip
+        self._joints.append(
+            (
+                (self.node(one, i), self.node(two, j)),
+                elements,
+                stiffness,
+                damping,
+                hinge_stiffness,
+                np.ravel(axis),
+                turn_stiffness,
+                turn_damping,
+                np.eye(3) if rest_rotation is None else rest_rotation,
+            )
+        )
 
     def add_side(
-        self, ends: tuple[Any, int, Any, int], *, stiffness: float, damping: float, repulsion: float,
-        towards: ArrayLike, offset: float,
-    ) -> None:  # fmt: skip
+        self,
+        ends: tuple[Any, int, Any, int],
+        *,
+        stiffness: float,
+        damping: float,
+        repulsion: float,
+        towards: ArrayLike,
+        offset: float,
+    ) -> None:
         """Join two elements side by side; `Sides` says what the arguments mean."""
         one, i, two, j = ends
         _require_rod(one)
         _require_rod(two)
-        self._sides.append(((self.element(one, i), self.element(two, j)), stiffness, damping, repulsion, towards,
-                            offset))  # fmt: skip
+        self._sides.append(
+            ((self.element(one, i), self.element(two, j)), stiffness, damping, repulsion, towards, offset)
+        )
 
     def add_pin(
-        self, system: Any, index: int, *, position: Array, axes: Sequence[bool] = (True, True, True),
-        start_time: float = ALWAYS, velocity: ArrayLike = (0.0, 0.0, 0.0),
-    ) -> None:  # fmt: skip
+        self,
+        system: Any,
+        index: int,
+        *,
+        position: Array,
+        axes: Sequence[bool] = (True, True, True),
+        start_time: float = ALWAYS,
+        velocity: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None:
         """Prescribe the motion of a node; `Pins` says what the arguments mean."""
         row = (self.node(system, index), start_time, np.ravel(velocity), np.array(axes, dtype=float), position)
         self._pins.append(row)
 
     def add_clamp(
-        self, system: Any, index: int, *, directors: Array | None, axes: Sequence[bool] = (True, True, True),
-        start_time: float = ALWAYS, omega: ArrayLike = (0.0, 0.0, 0.0),
-    ) -> None:  # fmt: skip
+        self,
+        system: Any,
+        index: int,
+        *,
+        directors: Array | None,
+        axes: Sequence[bool] = (True, True, True),
+        start_time: float = ALWAYS,
+        omega: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None:
         """Prescribe the rotation of an element; `Clamps` says what the arguments mean."""
         held = np.eye(3) if directors is None else directors
-        self._clamps.append((self.element(system, index), start_time, np.ravel(omega), np.array(axes, dtype=float),
-                             float(directors is not None), held))  # fmt: skip
+        self._clamps.append(
+            (
+                self.element(system, index),
+                start_time,
+                np.ravel(omega),
+                np.array(axes, dtype=float),
+                float(directors is not None),
+                held,
+            )
+        )
 
     # contact
 
@@ -296,16 +346,29 @@ class SceneBuilder:
             rings=_table(Rings, rings, "i", "i"),
             touched=np.unique(np.array([place for place in places if place >= 0], dtype=np.int64)),
             point_loads=_table(PointLoads, self._point_loads, "i", "", "3", "3", "3", "3", ""),
-            dead_loads=DeadLoads(bool(self._dead_force.any()), bool(self._dead_torque.any()), self._dead_force,
-                                 self._dead_torque, self._body_force, self._body_torque),
-            waves=Waves(axis=np.ascontiguousarray(keys[:, :3]), sine=self._stacked(sine for _, (sine, _, _) in waves),
-                        cosine=self._stacked(cosine for _, (_, cosine, _) in waves),
-                        angular_frequency=keys[:, 3].copy(), ramp_time=keys[:, 4].copy()),
+            dead_loads=DeadLoads(
+                bool(self._dead_force.any()),
+                bool(self._dead_torque.any()),
+                self._dead_force,
+                self._dead_torque,
+                self._body_force,
+                self._body_torque,
+            ),
+            waves=Waves(
+                axis=np.ascontiguousarray(keys[:, :3]),
+                sine=self._stacked(sine for _, (sine, _, _) in waves),
+                cosine=self._stacked(cosine for _, (_, cosine, _) in waves),
+                angular_frequency=keys[:, 3].copy(),
+                ramp_time=keys[:, 4].copy(),
+            ),
             wave_span=_spans(spans),
-            flows=Flows(_spans([span for span, _ in self._flows]),
-                        np.array([mu for _, mu in self._flows], dtype=np.float64)),
-            tensions=Tensions(_spans([span for span, _ in self._tensions]),
-                              np.array([is_closed for _, is_closed in self._tensions], dtype=np.bool_)),
+            flows=Flows(
+                _spans([span for span, _ in self._flows]), np.array([mu for _, mu in self._flows], dtype=np.float64)
+            ),
+            tensions=Tensions(
+                _spans([span for span, _ in self._tensions]),
+                np.array([is_closed for _, is_closed in self._tensions], dtype=np.bool_),
+            ),
             drag=Drag(bool(self._drag_force.any() or self._drag_torque.any()), self._drag_force, self._drag_torque),
             joints=_table(Joints, self._joints, "i2", "i2", "", "", "", "3", "", "", "33"),
             sides=_table(Sides, self._sides, "i2", "", "", "", "23", ""),
@@ -318,14 +381,24 @@ class SceneBuilder:
             ground_friction=np.array([friction for _, _, friction in self._body_planes], dtype=np.float64),
             pins=_table(Pins, self._pins, "i", "", "3", "3", "3"),
             clamps=_table(Clamps, self._clamps, "i", "", "3", "3", "", "33"),
-            decay=Decay(bool(self._node_rate.any() or self._element_rate.any()), bool(self._dilating_rate.any()),
-                        self._node_rate, self._element_rate, self._dilating_rate, aligned_zeros((self._slots,)),
-                        aligned_zeros((self._slots,)), bool(self._body_rate.any() or self._body_turn_rate.any()),
-                        self._body_rate, self._body_turn_rate),
-            filters=Filters(_spans([span for span, _, _ in self._filters]),
-                            np.array([order for _, order, _ in self._filters], dtype=np.int64),
-                            np.array([is_closed for _, _, is_closed in self._filters], dtype=np.bool_)),
-        )  # fmt: skip
+            decay=Decay(
+                bool(self._node_rate.any() or self._element_rate.any()),
+                bool(self._dilating_rate.any()),
+                self._node_rate,
+                self._element_rate,
+                self._dilating_rate,
+                aligned_zeros((self._slots,)),
+                aligned_zeros((self._slots,)),
+                bool(self._body_rate.any() or self._body_turn_rate.any()),
+                self._body_rate,
+                self._body_turn_rate,
+            ),
+            filters=Filters(
+                _spans([span for span, _, _ in self._filters]),
+                np.array([order for _, order, _ in self._filters], dtype=np.int64),
+                np.array([is_closed for _, _, is_closed in self._filters], dtype=np.bool_),
+            ),
+        )
 
     def _blocks(self) -> list[_Span]:
         """Return the slots of as many rods at a time as stay in the cache, in whole blocks at the end."""
@@ -349,13 +422,17 @@ class SceneBuilder:
             row=np.searchsorted([pair[0] for pair in pairs], np.arange(len(self._rods) + 1)).astype(np.int64),
             other=np.array([pair[1] for pair in pairs], dtype=np.int64),
             stiffness=np.array([pair[2] for pair in pairs], dtype=np.float64),
-            damping=np.array([pair[3] for pair in pairs], dtype=np.float64), rod_of=rod_of, elements=slots,
+            damping=np.array([pair[3] for pair in pairs], dtype=np.float64),
+            rod_of=rod_of,
+            elements=slots,
             stray=STRAY * min((float(rod.radius.min()) for rod in touching), default=1.0),
-            pairs=aligned_zeros((ROOM * slots.size, 3), np.int64), cell=aligned_zeros((slots.size, 3), np.int64),
+            pairs=aligned_zeros((ROOM * slots.size, 3), np.int64),
+            cell=aligned_zeros((slots.size, 3), np.int64),
             # half as many elements as buckets or fewer, and a power of two
             bucket=aligned_zeros((2 ** (2 * slots.size).bit_length() + 1,), np.int64),
-            member=aligned_zeros((slots.size,), np.int64), near=aligned_zeros((slots.size,), np.int64),
-        )  # fmt: skip
+            member=aligned_zeros((slots.size,), np.int64),
+            near=aligned_zeros((slots.size,), np.int64),
+        )
 
     def _stacked(self, rows: Any) -> Array:
         chosen = list(rows)

@@ -34,49 +34,89 @@ TABLE = {
     "": dict.fromkeys(("MemoryBlockCosseratRod", "MemoryBlockRigidBody"), MEMORY),
     "_calculus": {"_get_zero_array": "numpy.zeros makes arrays"},
     "_contact_functions": dict.fromkeys(
-        ("_calculate_contact_forces_cylinder_plane", "_calculate_contact_forces_rod_cylinder",
-         "_calculate_contact_forces_rod_plane", "_calculate_contact_forces_rod_plane_with_anisotropic_friction",
-         "_calculate_contact_forces_rod_rod", "_calculate_contact_forces_rod_sphere",
-         "_calculate_contact_forces_self_rod"), CONTACT),
+        (
+            "_calculate_contact_forces_cylinder_plane",
+            "_calculate_contact_forces_rod_cylinder",
+            "_calculate_contact_forces_rod_plane",
+            "_calculate_contact_forces_rod_plane_with_anisotropic_friction",
+            "_calculate_contact_forces_rod_rod",
+            "_calculate_contact_forces_rod_sphere",
+            "_calculate_contact_forces_self_rod",
+        ),
+        CONTACT,
+    ),
     "_elastica_numpy": {"_elastica_numpy": "there is one implementation, compiled by Numba"},
     "_rotations": dict.fromkeys(
-        ("_generate_skew_map", "_generate_skew_map_sentinel", "_get_diag_map", "_get_inv_skew_map", "_get_skew_map",
-         "_get_skew_symmetric_pair", "_skew_symmetrize_sq"), SKEW),
+        (
+            "_generate_skew_map",
+            "_generate_skew_map_sentinel",
+            "_get_diag_map",
+            "_get_inv_skew_map",
+            "_get_skew_map",
+            "_get_skew_symmetric_pair",
+            "_skew_symmetrize_sq",
+        ),
+        SKEW,
+    ),
     "_synchronize_periodic_boundary": dict.fromkeys(
-        ("_ConstrainPeriodicBoundaries", "_synchronize_periodic_boundary_of_matrix_collection",
-         "_synchronize_periodic_boundary_of_scalar_collection",
-         "_synchronize_periodic_boundary_of_vector_collection"), RINGS),
+        (
+            "_ConstrainPeriodicBoundaries",
+            "_synchronize_periodic_boundary_of_matrix_collection",
+            "_synchronize_periodic_boundary_of_scalar_collection",
+            "_synchronize_periodic_boundary_of_vector_collection",
+        ),
+        RINGS,
+    ),
     "collision": {},
     "collision.AABBCollection": dict.fromkeys(
-        ("AABBCollection", "AABBHierarchy", "are_aabb_intersecting", "find_nearest_integer_square_root"), CONTACT),
+        ("AABBCollection", "AABBHierarchy", "are_aabb_intersecting", "find_nearest_integer_square_root"), CONTACT
+    ),
     "dissipation": dict.fromkeys(
-        ("DampenType", "_filter_function_periodic_condition", "_filter_function_periodic_condition_ring_rod",
-         "nb_filter_rate"), FILTER),
+        (
+            "DampenType",
+            "_filter_function_periodic_condition",
+            "_filter_function_periodic_condition_ring_rod",
+            "nb_filter_rate",
+        ),
+        FILTER,
+    ),
     "experimental.interaction": dict.fromkeys(
-        ("AnisotropicFrictionalPlaneRigidBody", "anisotropic_friction_numba_rigid_body"), BODY_PLANE),
+        ("AnisotropicFrictionalPlaneRigidBody", "anisotropic_friction_numba_rigid_body"), BODY_PLANE
+    ),
     "experimental.timestepper": {},
     "experimental.timestepper.explicit_steppers": dict.fromkeys(
-        ("EulerForward", "EulerForwardMemory", "ExplicitStepperMixin", "RungeKutta4", "RungeKutta4Memory"), EXPLICIT),
+        ("EulerForward", "EulerForwardMemory", "ExplicitStepperMixin", "RungeKutta4", "RungeKutta4Memory"), EXPLICIT
+    ),
     "experimental.timestepper.memory": dict.fromkeys(
-        ("MemoryCollection", "make_memory_for_explicit_stepper"), EXPLICIT),
+        ("MemoryCollection", "make_memory_for_explicit_stepper"), EXPLICIT
+    ),
     "experimental.timestepper.protocol": dict.fromkeys(
-        ("ExplicitStepperProtocol", "ExplicitSystemProtocol", "MemoryProtocol"), EXPLICIT),
+        ("ExplicitStepperProtocol", "ExplicitSystemProtocol", "MemoryProtocol"), EXPLICIT
+    ),
     "interaction": {
         **dict.fromkeys(("anisotropic_friction", "apply_normal_force_numba"), PLANE),
         "apply_normal_force_numba_rigid_body": BODY_PLANE,
     },
     "joint": dict.fromkeys(
-        ("_calculate_contact_forces_rod_rigid_body", "_calculate_contact_forces_rod_rod",
-         "_calculate_contact_forces_self_rod"), CONTACT),
+        (
+            "_calculate_contact_forces_rod_rigid_body",
+            "_calculate_contact_forces_rod_rod",
+            "_calculate_contact_forces_self_rod",
+        ),
+        CONTACT,
+    ),
     "memory_block": dict.fromkeys(("MemoryBlockCosseratRod", "MemoryBlockRigidBody"), MEMORY),
     "memory_block.memory_block_rigid_body": {"MemoryBlockRigidBody": MEMORY},
     "memory_block.memory_block_rod": dict.fromkeys(("MemoryBlockCosseratRod", "make_block_memory_metadata"), MEMORY),
     "memory_block.memory_block_rod_base": dict.fromkeys(
-        ("MemoryBlockRodBase", "make_block_memory_metadata", "make_block_memory_periodic_boundary_metadata"), MEMORY),
+        ("MemoryBlockRodBase", "make_block_memory_metadata", "make_block_memory_periodic_boundary_metadata"), MEMORY
+    ),
     "memory_block.protocol": dict.fromkeys(
-        ("BlockProtocol", "BlockRigidBodyProtocol", "BlockRodProtocol", "BlockSystemProtocol"), MEMORY),
+        ("BlockProtocol", "BlockRigidBodyProtocol", "BlockRodProtocol", "BlockSystemProtocol"), MEMORY
+    ),
     "memory_block.utils": dict.fromkeys(
-        ("make_block_memory_metadata", "make_block_memory_periodic_boundary_metadata"), MEMORY),
+        ("make_block_memory_metadata", "make_block_memory_periodic_boundary_metadata"), MEMORY
+    ),
     "modules.callbacks": dict.fromkeys(("_CallBack", "SystemDSType", "SystemIdxDSType"), DECLARED),
     "modules.connections": {"_Connect": DECLARED},
     "modules.constraints": {"_Constraint": DECLARED},
@@ -87,38 +127,93 @@ TABLE = {
     "modules.operator_group": {"OperatorGroupFIFO": DECLARED},
     "reset_functions_for_block_structure": {"_reset_scalar_ghost": MEMORY, "_reset_vector_ghost": MEMORY},
     "reset_functions_for_block_structure._reset_ghost_vector_or_scalar": dict.fromkeys(
-        ("_reset_scalar_ghost", "_reset_vector_ghost"), MEMORY),
+        ("_reset_scalar_ghost", "_reset_vector_ghost"), MEMORY
+    ),
     "rigidbody.cylinder": dict.fromkeys(("_assert_check_array_size", "_assert_check_lower_bound"), CHECKS),
     "rigidbody.data_structures": dict.fromkeys(
-        ("_RigidRodSymplecticStepperMixin", "_DynamicState", "_KinematicState", "_bootstrap_from_data"), MEMORY),
+        ("_RigidRodSymplecticStepperMixin", "_DynamicState", "_KinematicState", "_bootstrap_from_data"), MEMORY
+    ),
     "rod.data_structures": dict.fromkeys(
-        ("_RodSymplecticStepperMixin", "_DerivativeState", "_DynamicState", "_KinematicState", "_State",
-         "_bootstrap_from_data", "overload_operator_dynamic_numba", "overload_operator_kinematic_numba"), MEMORY),
+        (
+            "_RodSymplecticStepperMixin",
+            "_DerivativeState",
+            "_DynamicState",
+            "_KinematicState",
+            "_State",
+            "_bootstrap_from_data",
+            "overload_operator_dynamic_numba",
+            "overload_operator_kinematic_numba",
+        ),
+        MEMORY,
+    ),
     "rod.cosserat_rod": {"_compute_sigma_kappa_for_blockstructure": STAGES},
     "rod.factory_function": {
-        "allocate": MAKE, "get_shear_modulus": MAKE,
-        **dict.fromkeys(("_assert_dim", "_assert_shape", "_directors_validity_checker", "_position_validity_checker",
-                         "_position_validity_checker_ring_rod"), CHECKS),
+        "allocate": MAKE,
+        "get_shear_modulus": MAKE,
+        **dict.fromkeys(
+            (
+                "_assert_dim",
+                "_assert_shape",
+                "_directors_validity_checker",
+                "_position_validity_checker",
+                "_position_validity_checker_ring_rod",
+            ),
+            CHECKS,
+        ),
     },
     "rod.knot_theory": dict.fromkeys(
-        ("_compute_additional_segment", "_compute_auxiliary_line", "_compute_auxiliary_line_added_segments",
-         "_compute_link", "_compute_twist", "_compute_writhe"), KNOTS),
+        (
+            "_compute_additional_segment",
+            "_compute_auxiliary_line",
+            "_compute_auxiliary_line_added_segments",
+            "_compute_link",
+            "_compute_twist",
+            "_compute_writhe",
+        ),
+        KNOTS,
+    ),
     "rod.protocol": {"_CosseratRodEnergy": "rod.energy.RodEnergy has a rod's energies"},
     "systems": dict.fromkeys(("MemoryCollection", "make_memory_for_explicit_stepper"), EXPLICIT),
     "systems.analytical": dict.fromkeys(
-        ("BaseStatefulSystem", "BaseSymplecticSystem", "BaseUndampedSimpleHarmonicOscillatorSystem",
-         "CollectiveSystem", "DampedSimpleHarmonicOscillatorSystem",
-         "ScalarExponentialDampedHarmonicOscillatorCollectiveSystem", "ScalarExponentialDecaySystem",
-         "SimpleSystemWithPositionsDirectors", "SymplecticUndampedHarmonicOscillatorCollectiveSystem",
-         "SymplecticUndampedSimpleHarmonicOscillatorSystem", "TestDynamicState", "TestKinematicState",
-         "make_simple_system_with_positions_directors"), EXAMPLES),
+        (
+            "BaseStatefulSystem",
+            "BaseSymplecticSystem",
+            "BaseUndampedSimpleHarmonicOscillatorSystem",
+            "CollectiveSystem",
+            "DampedSimpleHarmonicOscillatorSystem",
+            "ScalarExponentialDampedHarmonicOscillatorCollectiveSystem",
+            "ScalarExponentialDecaySystem",
+            "SimpleSystemWithPositionsDirectors",
+            "SymplecticUndampedHarmonicOscillatorCollectiveSystem",
+            "SymplecticUndampedSimpleHarmonicOscillatorSystem",
+            "TestDynamicState",
+            "TestKinematicState",
+            "make_simple_system_with_positions_directors",
+        ),
+        EXAMPLES,
+    ),
     "timestepper._stepper_interface": {"_TimeStepper": STEPPERS},
     "timestepper.explicit_steppers": dict.fromkeys(
-        ("EulerForward", "ExplicitStepperMethods", "ExplicitStepperTag", "RungeKutta4", "_SystemCollectionStepper",
-         "_SystemInstanceStepper"), EXPLICIT),
+        (
+            "EulerForward",
+            "ExplicitStepperMethods",
+            "ExplicitStepperTag",
+            "RungeKutta4",
+            "_SystemCollectionStepper",
+            "_SystemInstanceStepper",
+        ),
+        EXPLICIT,
+    ),
     "timestepper.symplectic_steppers": dict.fromkeys(
-        ("SymplecticStepperMethods", "SymplecticStepperMixin", "SymplecticStepperTag", "_SystemCollectionStepper",
-         "_SystemInstanceStepper"), STEPPERS),
+        (
+            "SymplecticStepperMethods",
+            "SymplecticStepperMixin",
+            "SymplecticStepperTag",
+            "_SystemCollectionStepper",
+            "_SystemInstanceStepper",
+        ),
+        STEPPERS,
+    ),
     "typing": {
         **dict.fromkeys(("BlockSystemProtocol", "BlockSystemType"), MEMORY),
         **dict.fromkeys(("State", "StateType"), "motion is in attributes of systems, such as position_collection"),
@@ -128,24 +223,33 @@ TABLE = {
     "wrappers.constraints": {"_Constraint": DECLARED},
     "wrappers.forcing": {"_ExtForceTorque": DECLARED},
     "wrappers.memory_block": {"construct_memory_block_structures": MEMORY},
-}  # fmt: skip
+}
 """Names that are not there, by module, and what to use instead"""
 
 METHODS = {
     "BaseSystemCollection": {
-        "enable_block_supports": MEMORY, "block_systems": MEMORY,
+        "enable_block_supports": MEMORY,
+        "block_systems": MEMORY,
         "synchronize": "loads are computed inside the step: PositionVerlet().step(simulator, time, dt) takes one",
     },
     "GeneralConstraint": dict.fromkeys(
-        ("nb_constrain_translational_values", "nb_constrain_translational_rates", "nb_constrain_rotational_rates",
-         "nb_constraint_rotational_values"), CONSTRAINT),
+        (
+            "nb_constrain_translational_values",
+            "nb_constrain_translational_rates",
+            "nb_constrain_rotational_rates",
+            "nb_constraint_rotational_values",
+        ),
+        CONSTRAINT,
+    ),
     "InteractionPlane": {"apply_normal_force": PLANE},
     "SurfaceJointSideBySide": {
-        "_apply_forces": "apply_forces adds them", "_apply_torques": "apply_torques adds them",
+        "_apply_forces": "apply_forces adds them",
+        "_apply_torques": "apply_torques adds them",
     },
     "SymplecticStepper": dict.fromkeys(
-        ("get_steps", "get_prefactors", "step_methods", "step_single_instance"), STEPPERS),
-}  # fmt: skip
+        ("get_steps", "get_prefactors", "step_methods", "step_single_instance"), STEPPERS
+    ),
+}
 """Methods that are not there, by class, and what to use instead"""
 
 

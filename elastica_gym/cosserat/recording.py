@@ -67,12 +67,14 @@ class SystemRecorder:
         self._bodies = [each for each in systems if isinstance(each, RigidBodyBase)]
         self._step.append(step)
         self._sim_time.append(float(time))
-        self._moments.append({
-            "nodes": [rod.position_collection.T.copy() for rod in self._rods],
-            "radii": [np.array(rod.radius) for rod in self._rods],
-            "centre": [body.position_collection[:, 0].copy() for body in self._bodies],
-            "axis": [body.director_collection[2, :, 0].copy() for body in self._bodies],
-        })  # fmt: skip
+        self._moments.append(
+            {
+                "nodes": [rod.position_collection.T.copy() for rod in self._rods],
+                "radii": [np.array(rod.radius) for rod in self._rods],
+                "centre": [body.position_collection[:, 0].copy() for body in self._bodies],
+                "axis": [body.director_collection[2, :, 0].copy() for body in self._bodies],
+            }
+        )
         self._energies.append([sum(_energy(each, kind) for each in (*self._rods, *self._bodies)) for kind in ENERGIES])
 
     def write(self, path: str | Path) -> Path:
@@ -91,8 +93,9 @@ class SystemRecorder:
         stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Y_UP, static=True)
         times: Any = SimpleNamespace(step=np.array(self._step, dtype=np.int64), sim_time=np.array(self._sim_time))
         for number, rod in enumerate(self._rods):
-            _log_rod(stream, times, number, self._series("nodes", number), self._series("radii", number),
-                     rod.ring_rod_flag)  # fmt: skip
+            _log_rod(
+                stream, times, number, self._series("nodes", number), self._series("radii", number), rod.ring_rod_flag
+            )
         for number, body in enumerate(self._bodies):
             _log_body(stream, times, number, self._series("centre", number), self._series("axis", number), body)
         for kind, values in zip(ENERGIES, np.array(self._energies).T, strict=True):
@@ -110,18 +113,18 @@ def _energy(system: Any, kind: str) -> float:
     return 0.0 if compute is None else float(np.sum(compute()))
 
 
-def _log_rod(
-    stream: "rr.RecordingStream", times: Any, number: int, nodes: Array, radii: Array, is_ring: bool
-) -> None:
+def _log_rod(stream: "rr.RecordingStream", times: Any, number: int, nodes: Array, radii: Array, is_ring: bool) -> None:
     """Log a rod: nodes [m], (T, N, 3), and radii of elements [m], (T, M)."""
     rr = import_rerun()
     ends = np.concatenate([nodes, nodes[:, :1]], axis=1) if is_ring else nodes
     edges, color = np.diff(ends, axis=1), SERIES[number % len(SERIES)]
     n_steps, n_elements = radii.shape
     body = rr.Capsules3D.columns(
-        translations=ends[:, :-1].reshape(-1, 3), quaternions=rotations_from_z(edges).reshape(-1, 4),
-        lengths=np.linalg.norm(edges, axis=-1).ravel(), radii=radii.ravel(),
-    )  # fmt: skip
+        translations=ends[:, :-1].reshape(-1, 3),
+        quaternions=rotations_from_z(edges).reshape(-1, 4),
+        lengths=np.linalg.norm(edges, axis=-1).ravel(),
+        radii=radii.ravel(),
+    )
     send_columns(stream, times, f"rods/{number}/body", body.partition([n_elements] * n_steps))
     stream.log(f"rods/{number}/body", rr.Capsules3D.from_fields(fill_mode="solid", colors=[color]), static=True)
     points = rr.Points3D.columns(positions=nodes.reshape(-1, 3)).partition([nodes.shape[1]] * n_steps)

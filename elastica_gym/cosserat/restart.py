@@ -59,8 +59,10 @@ def load_state(simulator: Any, directory: str | os.PathLike = "saved", verbose: 
         with np.load(path) as data:
             for name in system._fields:
                 if data[name].shape != system._fields[name].shape:
-                    raise ValueError(f"{path} holds {name} of shape {data[name].shape}, "
-                                     f"the simulator's is {system._fields[name].shape}")  # fmt: skip
+                    raise ValueError(
+                        f"{path} holds {name} of shape {data[name].shape}, "
+                        f"the simulator's is {system._fields[name].shape}"
+                    )
                 system._fields[name][...] = data[name]
     # directors are corrected by this count, so it belongs to the state
     simulator.simulation.steps = meta["steps"]
@@ -70,5 +72,8 @@ def load_state(simulator: Any, directory: str | os.PathLike = "saved", verbose: 
 
 
 def _files(simulator: Any, folder: Path) -> list[tuple[Path, Any]]:
-    return [(folder / f"{type(system).__name__}_{number}.npz", system)
-            for number, system in enumerate(simulator.systems()) if hasattr(system, "_fields")]  # fmt: skip
+    return [
+        (folder / f"{type(system).__name__}_{number}.npz", system)
+        for number, system in enumerate(simulator.systems())
+        if hasattr(system, "_fields")
+    ]

@@ -23,15 +23,27 @@ from .rod.cosserat_rod import MATERIAL, CosseratRod, Lowered
 from .surface.plane import Plane
 
 NEVER = 2**62
-_BYSTANDER = Rod.straight(2, start=(1e6, 0.0, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=1.0,
-                          radius=0.1, density=1.0, youngs_modulus=1.0, shear_modulus=1.0)  # fmt: skip
+_BYSTANDER = Rod.straight(
+    2,
+    start=(1e6, 0.0, 0.0),
+    direction=(1.0, 0.0, 0.0),
+    normal=(0.0, 1.0, 0.0),
+    length=1.0,
+    radius=0.1,
+    density=1.0,
+    youngs_modulus=1.0,
+    shear_modulus=1.0,
+)
 INTERVALS = ("every", "step_skip", "sample_every")
 """Attributes of a callback that say how many steps are from one call to the next"""
 
 CALLED = {
-    "constraints": ("constrain_values", "constrain_rates"), "forcing": ("apply_forces", "apply_torques"),
-    "connections": ("apply_forces", "apply_torques"), "contacts": ("apply_contact",), "damping": ("dampen_rates",),
-}  # fmt: skip
+    "constraints": ("constrain_values", "constrain_rates"),
+    "forcing": ("apply_forces", "apply_torques"),
+    "connections": ("apply_forces", "apply_torques"),
+    "contacts": ("apply_contact",),
+    "damping": ("dampen_rates",),
+}
 """What a step calls of a user's own features, by their kind"""
 
 Call = Callable[[float], None]
@@ -119,9 +131,12 @@ class Simulation:
     """
 
     def __init__(
-        self, systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]], callbacks: Callbacks | None = None,
+        self,
+        systems: Sequence[Any],
+        declared: Mapping[str, Sequence[Declaration]],
+        callbacks: Callbacks | None = None,
         names: Mapping[int, str] | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.rods = [system for system in systems if isinstance(system, CosseratRod)]
         self.bodies = [system for system in systems if isinstance(system, RigidBodyBase)]
         for rod in self.rods:
@@ -165,12 +180,17 @@ class Simulation:
             nodes, elements = slice(first, first + rod.n_nodes), slice(first, first + rod.n_elems)
             voronoi = slice(first, first + rod.rest_kappa.shape[1])
             memory = {
-                "position_collection": s.x[0][:, nodes], "velocity_collection": s.v[0][:, nodes],
-                "director_collection": s.Q[0][:, :, elements], "omega_collection": s.w[0][:, elements],
-                "net_forces": s.force[0][:, nodes], "net_torques": s.torque[0][:, elements],
-                "external_forces": c.force[0][:, nodes], "external_torques": c.torque[0][:, elements],
-                "rest_sigma": c.rest_sigma[0][:, elements], "rest_kappa": c.rest_kappa[0][:, voronoi],
-            }  # fmt: skip
+                "position_collection": s.x[0][:, nodes],
+                "velocity_collection": s.v[0][:, nodes],
+                "director_collection": s.Q[0][:, :, elements],
+                "omega_collection": s.w[0][:, elements],
+                "net_forces": s.force[0][:, nodes],
+                "net_torques": s.torque[0][:, elements],
+                "external_forces": c.force[0][:, nodes],
+                "external_torques": c.torque[0][:, elements],
+                "rest_sigma": c.rest_sigma[0][:, elements],
+                "rest_kappa": c.rest_kappa[0][:, voronoi],
+            }
             for name in MATERIAL:
                 values = rod._fields[name]
                 memory[name] = material[used : used + values.size].reshape(values.shape)
@@ -182,12 +202,17 @@ class Simulation:
         """Let the bodies' attributes be views of the simulation's memory."""
         s = self.state
         for b, body in enumerate(self.bodies):
-            body._move({
-                "position_collection": s.body_x[0, b, :, None], "velocity_collection": s.body_v[0, b, :, None],
-                "director_collection": s.body_Q[0, b, :, :, None], "omega_collection": s.body_w[0, b, :, None],
-                "external_forces": s.body_force[0, b, :, None], "external_torques": s.body_torque[0, b, :, None],
-                "plane_contact": s.body_contact[0, b],
-            })  # fmt: skip
+            body._move(
+                {
+                    "position_collection": s.body_x[0, b, :, None],
+                    "velocity_collection": s.body_v[0, b, :, None],
+                    "director_collection": s.body_Q[0, b, :, :, None],
+                    "omega_collection": s.body_w[0, b, :, None],
+                    "external_forces": s.body_force[0, b, :, None],
+                    "external_torques": s.body_torque[0, b, :, None],
+                    "plane_contact": s.body_contact[0, b],
+                }
+            )
 
     def _lower(self) -> None:
         """Write the tables of the scene from what the built-in features and the arrays that they follow are now."""
@@ -209,8 +234,9 @@ class Simulation:
 
     def _values(self) -> bytes:
         """Return what is in the arrays that are followed."""
-        return b"".join(np.asarray(getattr(feature, name)).tobytes()
-                        for feature, names in self._followed.values() for name in names)  # fmt: skip
+        return b"".join(
+            np.asarray(getattr(feature, name)).tobytes() for feature, names in self._followed.values() for name in names
+        )
 
     def _add_constraints(self, declared: Sequence[Declaration]) -> None:
         """Add constraints so that the last one wins: after a user's own on a system, built-in ones are called too."""
@@ -310,8 +336,18 @@ class Simulation:
             body._time_step = dt
         self._time_step, self.state.time[0] = dt, time
         hooks = Hooks(**{name: hook.address for name, hook in self._hooks.items()})
-        stopped = simulate(self.model, self.scene, self.state, self.control, hooks, scheme, dt, n_steps,
-                           DENSE if self._has_loads else self._loading, self._broken)  # fmt: skip
+        stopped = simulate(
+            self.model,
+            self.scene,
+            self.state,
+            self.control,
+            hooks,
+            scheme,
+            dt,
+            n_steps,
+            DENSE if self._has_loads else self._loading,
+            self._broken,
+        )
         if stopped:
             self.warn_of_divergence()
             self._raise_error()
@@ -335,8 +371,12 @@ class Simulation:
         rod = int(np.searchsorted(self.model.first_slot, place, side="right")) - 1
         name = self._name(self.bodies[-1 - place] if place < 0 else self.rods[rod])
         since = f"step {step}" if step == sound + 1 else f"a step from {sound + 1} to {step}"
-        warnings.warn(f"velocities of {name} are infinite or NaN since {since}; the time step of "
-                      f"{self._time_step:.4g} s may be too large", RuntimeWarning, stacklevel=3)  # fmt: skip
+        warnings.warn(
+            f"velocities of {name} are infinite or NaN since {since}; the time step of "
+            f"{self._time_step:.4g} s may be too large",
+            RuntimeWarning,
+            stacklevel=3,
+        )
 
     def _name(self, system: Any) -> str:
         return self._names.get(id(system), type(system).__name__)
@@ -378,8 +418,11 @@ class Simulation:
         bound, culprit = self.limit()
         if dt > bound and not self._has_warned:
             self._has_warned = True
-            warnings.warn(f"the time step of {dt:.4g} s is above {bound:.4g} s, the largest stable one of {culprit}",
-                          RuntimeWarning, stacklevel=5)  # fmt: skip
+            warnings.warn(
+                f"the time step of {dt:.4g} s is above {bound:.4g} s, the largest stable one of {culprit}",
+                RuntimeWarning,
+                stacklevel=5,
+            )
 
 
 def is_lowered(kind: str, declaration: Declaration) -> bool:
@@ -390,8 +433,10 @@ def is_lowered(kind: str, declaration: Declaration) -> bool:
 def lower_joint(joint: Any, one: Any, first: Any, two: Any, second: Any, builder: SceneBuilder) -> None:
     """Write the rows of a joint, one for each pair of indices."""
     if np.size(first) != np.size(second):
-        raise ValueError(f"first_connect_idx and second_connect_idx of {type(joint).__name__} must be as many, "
-                         f"not {np.size(first)} and {np.size(second)}")  # fmt: skip
+        raise ValueError(
+            f"first_connect_idx and second_connect_idx of {type(joint).__name__} must be as many, "
+            f"not {np.size(first)} and {np.size(second)}"
+        )
     # contact as a joint, as in 0.2.x, has no indices
     for i, j in zip(np.ravel(first), np.ravel(second), strict=True) if np.size(first) else ((0, 0),):
         joint.lower(builder, (one, int(i), two, int(j)))
@@ -415,8 +460,10 @@ def _make_constraint(declaration: Declaration, system: Any) -> Any:
     kwargs = dict(declaration.kwargs)
     indices = {name: kwargs.pop(name, ()) for name in ("constrained_position_idx", "constrained_director_idx")}
     positions, directors = (as_indices(name, index) for name, index in indices.items())
-    for name, index, count in (("constrained_position_idx", positions, system.n_nodes),
-                               ("constrained_director_idx", directors, system.n_elems)):  # fmt: skip
+    for name, index, count in (
+        ("constrained_position_idx", positions, system.n_nodes),
+        ("constrained_director_idx", directors, system.n_elems),
+    ):
         if ((index < -count) | (index >= count)).any():
             raise IndexError(f"{name} must be from {-count} to {count - 1}, not {index.tolist()}")
     fixed = [system.position_collection[..., i].copy() for i in positions]
@@ -426,9 +473,10 @@ def _make_constraint(declaration: Declaration, system: Any) -> Any:
     try:
         constraint = declaration.make(*fixed, **more)
     except TypeError as error:
-        raise TypeError(f"{error}; its first arguments are the positions at constrained_position_idx "
-                        f"{positions.tolist()} and the directors at constrained_director_idx {directors.tolist()}"
-                        ) from error  # fmt: skip
+        raise TypeError(
+            f"{error}; its first arguments are the positions at constrained_position_idx "
+            f"{positions.tolist()} and the directors at constrained_director_idx {directors.tolist()}"
+        ) from error
     constraint._set_up(system, *indices.values())
     return constraint
 

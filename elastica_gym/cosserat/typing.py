@@ -19,13 +19,32 @@ from .systems.protocol import StaticSystemProtocol, SymplecticSystemProtocol, Sy
 from .timestepper.protocol import StepperProtocol, SymplecticStepperProtocol
 
 __all__ = [
-    "AllowedContactType", "BaseSystemCollection", "ConnectionIndex",
-    "ConstrainingIndex", "CosseratRodProtocol", "OperatorCallbackType", "OperatorFinalizeType", "OperatorType",
-    "RigidBodyProtocol", "RigidBodyType", "RodType", "StaticSystemProtocol", "StaticSystemType",
-    "StepType", "StepperProtocol", "SteppersOperatorsType", "SurfaceBase", "SurfaceType", "SymplecticStepperProtocol",
-    "SymplecticSystemProtocol", "SystemCollectionProtocol", "SystemCollectionType", "SystemIdxType", "SystemProtocol",
+    "AllowedContactType",
+    "BaseSystemCollection",
+    "ConnectionIndex",
+    "ConstrainingIndex",
+    "CosseratRodProtocol",
+    "OperatorCallbackType",
+    "OperatorFinalizeType",
+    "OperatorType",
+    "RigidBodyProtocol",
+    "RigidBodyType",
+    "RodType",
+    "StaticSystemProtocol",
+    "StaticSystemType",
+    "StepType",
+    "StepperProtocol",
+    "SteppersOperatorsType",
+    "SurfaceBase",
+    "SurfaceType",
+    "SymplecticStepperProtocol",
+    "SymplecticSystemProtocol",
+    "SystemCollectionProtocol",
+    "SystemCollectionType",
+    "SystemIdxType",
+    "SystemProtocol",
     "SystemType",
-]  # fmt: skip
+]
 
 RodType = RodBase
 RigidBodyType = RigidBodyBase

@@ -28,11 +28,19 @@ from .surroundings import Contact, Cylinder, Plane, Wave, net_couple
 
 
 def build_model(
-    rods: Sequence[Continuum], *, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
-    gravity: ArrayLike = (0.0, 0.0, 0.0), activation_time: float = 0.0, is_loaded: bool = False,
-    is_muscular: bool = True, is_balanced: bool = False, is_reciprocal: bool = False,
-    cylinders: Sequence[Cylinder] = (), rod_contact: Contact | None = None,
-) -> Model:  # fmt: skip
+    rods: Sequence[Continuum],
+    *,
+    planes: Sequence[Plane] = (),
+    waves: Sequence[Wave] = (),
+    gravity: ArrayLike = (0.0, 0.0, 0.0),
+    activation_time: float = 0.0,
+    is_loaded: bool = False,
+    is_muscular: bool = True,
+    is_balanced: bool = False,
+    is_reciprocal: bool = False,
+    cylinders: Sequence[Cylinder] = (),
+    rod_contact: Contact | None = None,
+) -> Model:
     """Lay rods out one after another and collect what acts on them.
 
     Parameters
@@ -86,18 +94,34 @@ def build_model(
     for rod, start in zip(rods, first, strict=True):
         lay_out(fields, rod, int(start))
     return Model(
-        first_slot=first.astype(np.int64), n_elements=counts.astype(np.int64), **fields,
-        gravity=np.array(gravity, dtype=np.float64), is_loaded=is_loaded, is_muscular=is_muscular,
+        first_slot=first.astype(np.int64),
+        n_elements=counts.astype(np.int64),
+        **fields,
+        gravity=np.array(gravity, dtype=np.float64),
+        is_loaded=is_loaded,
+        is_muscular=is_muscular,
         is_viscous=bool(fields["viscosity"].any()),
-        is_balanced=is_balanced, is_reciprocal=is_reciprocal, activation_time=float(activation_time),
+        is_balanced=is_balanced,
+        is_reciprocal=is_reciprocal,
+        activation_time=float(activation_time),
         planes=plane_table(planes),
-        waves=_wave_table(waves, rods, first, slots), cylinders=_cylinder_table(cylinders),
+        waves=_wave_table(waves, rods, first, slots),
+        cylinders=_cylinder_table(cylinders),
         rod_contact=_rod_contact(rod_contact, rods, first, slots),
-    )  # fmt: skip
+    )
 
 
-_SCALAR = ("rest_length", "inv_rest_length", "rest_voronoi_length", "inv_rest_voronoi_length", "volume_root",
-           "contact_radius", "mass", "inv_mass", "damping_rate")  # fmt: skip
+_SCALAR = (
+    "rest_length",
+    "inv_rest_length",
+    "rest_voronoi_length",
+    "inv_rest_voronoi_length",
+    "volume_root",
+    "contact_radius",
+    "mass",
+    "inv_mass",
+    "damping_rate",
+)
 _ROWS = {"shear": 3, "bend": 3, "inv_bend": 3, "inertia": 3, "inv_inertia": 3, "share": 2, "weight": 2, "viscosity": 2}
 
 
@@ -109,17 +133,24 @@ def lay_out(fields: Mapping[str, Array], rod: Continuum, start: int) -> None:
     share = np.full((2, n), 0.5)
     share[0, 0] = share[1, -1] = 1.0
     for name, where, value in (
-        ("mass", nodes, m), ("inv_mass", nodes, rod.inv_nodal_mass), ("damping_rate", nodes, rod.damping_rate),
-        ("rest_length", elements, rod.rest_length), ("inv_rest_length", elements, 1.0 / rod.rest_length),
-        ("volume_root", elements, rod.radius * np.sqrt(rod.rest_length)), ("contact_radius", elements, rod.radius),
-        ("shear", elements, rod.shear_stiffness), ("inertia", elements, rod.inertia),
-        ("inv_inertia", elements, rod.inv_inertia), ("share", elements, share),
+        ("mass", nodes, m),
+        ("inv_mass", nodes, rod.inv_nodal_mass),
+        ("damping_rate", nodes, rod.damping_rate),
+        ("rest_length", elements, rod.rest_length),
+        ("inv_rest_length", elements, 1.0 / rod.rest_length),
+        ("volume_root", elements, rod.radius * np.sqrt(rod.rest_length)),
+        ("contact_radius", elements, rod.radius),
+        ("shear", elements, rod.shear_stiffness),
+        ("inertia", elements, rod.inertia),
+        ("inv_inertia", elements, rod.inv_inertia),
+        ("share", elements, share),
         ("weight", elements, np.stack([m[:-1], m[1:]]) / (m[:-1] + m[1:])),
         ("viscosity", elements, [np.broadcast_to(nu, n) for nu in (rod.viscosity, rod.torque_viscosity)]),
         ("rest_voronoi_length", voronoi, rod.rest_voronoi_length),
-        ("inv_rest_voronoi_length", voronoi, 1.0 / rod.rest_voronoi_length), ("bend", voronoi, rod.bend_stiffness),
+        ("inv_rest_voronoi_length", voronoi, 1.0 / rod.rest_voronoi_length),
+        ("bend", voronoi, rod.bend_stiffness),
         ("inv_bend", voronoi, inverse(rod.bend_stiffness)),
-    ):  # fmt: skip
+    ):
         fields[name][..., where] = value
 
 
@@ -137,11 +168,15 @@ def plane_table(planes: Sequence[Plane]) -> Planes:
 
     normal = column("normal", 3)
     return Planes(
-        origin=column("origin", 3), normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
-        stiffness=column("stiffness", 1), damping=column("damping", 1),
-        surface_tolerance=column("reach", 2), slip_tolerance=column("slip_tolerance", 1),
-        kinetic_friction=column("kinetic_friction", 3), static_friction=column("static_friction", 3),
-    )  # fmt: skip
+        origin=column("origin", 3),
+        normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
+        stiffness=column("stiffness", 1),
+        damping=column("damping", 1),
+        surface_tolerance=column("reach", 2),
+        slip_tolerance=column("slip_tolerance", 1),
+        kinetic_friction=column("kinetic_friction", 3),
+        static_friction=column("static_friction", 3),
+    )
 
 
 def _wave_table(waves: Sequence[Wave], rods: Sequence[Continuum], first: np.ndarray, slots: int) -> Waves:
@@ -153,10 +188,12 @@ def _wave_table(waves: Sequence[Wave], rods: Sequence[Continuum], first: np.ndar
         for table, couple in zip((sine, cosine), wave.profiles(rods[wave.rod].rest_length), strict=True):
             table[row, start : start + n] = net_couple(couple)
     return Waves(
-        axis=np.array([wave.axis for wave in waves], dtype=np.float64).reshape(len(waves), 3), sine=sine, cosine=cosine,
+        axis=np.array([wave.axis for wave in waves], dtype=np.float64).reshape(len(waves), 3),
+        sine=sine,
+        cosine=cosine,
         angular_frequency=np.array([2.0 * np.pi / wave.period for wave in waves], dtype=np.float64),
         ramp_time=np.array([wave.ramp_time for wave in waves], dtype=np.float64),
-    )  # fmt: skip
+    )
 
 
 def _cylinder_table(cylinders: Sequence[Cylinder]) -> Cylinders:
@@ -167,12 +204,18 @@ def _cylinder_table(cylinders: Sequence[Cylinder]) -> Cylinders:
         return np.array([getattr(cylinder.rods, name) for cylinder in cylinders], dtype=np.float64)
 
     return Cylinders(
-        length=column("length"), radius=column("radius"), mass=column("mass"),
-        inertia=column("inertia").reshape(len(cylinders), 3), ground_stiffness=column("ground_stiffness"),
-        ground_damping=column("ground_damping"), ground_friction=column("ground_friction"),
-        rod_stiffness=rods("stiffness"), rod_damping=rods("damping"), rod_friction=rods("friction"),
+        length=column("length"),
+        radius=column("radius"),
+        mass=column("mass"),
+        inertia=column("inertia").reshape(len(cylinders), 3),
+        ground_stiffness=column("ground_stiffness"),
+        ground_damping=column("ground_damping"),
+        ground_friction=column("ground_friction"),
+        rod_stiffness=rods("stiffness"),
+        rod_damping=rods("damping"),
+        rod_friction=rods("friction"),
         rod_slip_damping=rods("slip_damping"),
-    )  # fmt: skip
+    )
 
 
 def _rod_contact(contact: Contact | None, rods: Sequence[Continuum], first: np.ndarray, slots: int) -> RodContact:
@@ -182,10 +225,15 @@ def _rod_contact(contact: Contact | None, rods: Sequence[Continuum], first: np.n
         last_other[here], last_clear[here] = start - 1, start + _last_clear(rod)
     law = contact or Contact(stiffness=1.0)
     return RodContact(
-        is_on=contact is not None, stiffness=float(law.stiffness), damping=float(law.damping),
-        friction=float(law.friction), slip_damping=float(law.slip_damping), last_other=last_other,
-        last_clear=last_clear, stray=0.2 * min(float(rod.radius.min()) for rod in rods),
-    )  # fmt: skip
+        is_on=contact is not None,
+        stiffness=float(law.stiffness),
+        damping=float(law.damping),
+        friction=float(law.friction),
+        slip_damping=float(law.slip_damping),
+        last_other=last_other,
+        last_clear=last_clear,
+        stray=0.2 * min(float(rod.radius.min()) for rod in rods),
+    )
 
 
 def _last_clear(rod: Continuum) -> Index:

@@ -64,15 +64,19 @@ def energy(model: Model, state: State, control: Control) -> Energy:
     kappa = current.kappa - control.rest_kappa
     bodies, g = model.cylinders, model.gravity
     return Energy(
-        translational=0.5 * (np.einsum("k,bik->b", model.mass, state.v**2)
-                             + np.einsum("c,bci->b", bodies.mass, state.body_v**2)),
-        rotational=0.5 * (np.einsum("ik,bik,bk->b", model.inertia, state.w**2, inv_e)
-                          + np.einsum("ci,bci->b", bodies.inertia, state.body_w**2)),
+        translational=0.5
+        * (np.einsum("k,bik->b", model.mass, state.v**2) + np.einsum("c,bci->b", bodies.mass, state.body_v**2)),
+        rotational=0.5
+        * (
+            np.einsum("ik,bik,bk->b", model.inertia, state.w**2, inv_e)
+            + np.einsum("ci,bci->b", bodies.inertia, state.body_w**2)
+        ),
         shear=0.5 * np.einsum("ik,bik,k,bk->b", model.shear, sigma**2, model.rest_length, stretched),
         bending=0.5 * np.einsum("ik,bik,k,bk->b", model.bend, kappa**2, model.rest_voronoi_length, lengthened),
-        gravitational=-(np.einsum("k,i,bik->b", model.mass, g, state.x)
-                        + np.einsum("c,i,bci->b", bodies.mass, g, state.body_x)),
-    )  # fmt: skip
+        gravitational=-(
+            np.einsum("k,i,bik->b", model.mass, g, state.x) + np.einsum("c,i,bci->b", bodies.mass, g, state.body_x)
+        ),
+    )
 
 
 class Ledger:
@@ -115,8 +119,15 @@ class Ledger:
         before = {name: getattr(state, name).copy() for name in _MOVING}
         self._team.advance(n_envs, dt, 1)
         kept = state.decay[:, None]
-        velocities = [0.5 * (a / b + before[name]) for name, a, b in (("v", state.v, kept), ("w", state.w, kept),
-                      ("body_v", state.body_v, 1.0), ("body_w", state.body_w, 1.0))]  # fmt: skip
+        velocities = [
+            0.5 * (a / b + before[name])
+            for name, a, b in (
+                ("v", state.v, kept),
+                ("w", state.w, kept),
+                ("body_v", state.body_v, 1.0),
+                ("body_w", state.body_w, 1.0),
+            )
+        ]
         power = _power(state, velocities)
         for name, team in self._teams.items():
             for field, value in before.items():

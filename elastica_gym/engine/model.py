@@ -273,19 +273,32 @@ def make_state(model: Model, n_envs: int = 1) -> State:
     """
     slots = model.mass.size
     vector, scalar = (n_envs, 3, slots), (n_envs, slots)
-    shapes = {"Q": (n_envs, 3, 3, slots), "time": (n_envs,), "scratch": (n_envs, SCRATCH, slots),
-              "length": scalar, "radius": scalar, "normal_force": scalar, "decay": scalar,
-              "rod_touch": scalar}  # fmt: skip
+    shapes = {
+        "Q": (n_envs, 3, 3, slots),
+        "time": (n_envs,),
+        "scratch": (n_envs, SCRATCH, slots),
+        "length": scalar,
+        "radius": scalar,
+        "normal_force": scalar,
+        "decay": scalar,
+        "rod_touch": scalar,
+    }
     n_bodies = model.cylinders.mass.size
     shapes |= {name: (n_envs, n_bodies, 3) for name in State._fields if name.startswith("body_")}
     shapes |= {"body_Q": (n_envs, n_bodies, 3, 3), "body_contact": (n_envs, n_bodies, 6, 7), "body_touch": scalar}
     elements = _elements(model) if model.rod_contact.is_on else np.zeros(0, dtype=np.int64)
     room = min(elements.size * (elements.size - 1) // 2, ROOM * elements.size)
-    shapes |= {"step": (n_envs,), "order": (n_envs, elements.size), "n_pairs": (n_envs,), "pairs": (n_envs, room),
-               "listed_reach": scalar}  # fmt: skip
+    shapes |= {
+        "step": (n_envs,),
+        "order": (n_envs, elements.size),
+        "n_pairs": (n_envs,),
+        "pairs": (n_envs, room),
+        "listed_reach": scalar,
+    }
     whole = ("step", "order", "n_pairs", "pairs")
-    state = State(*(aligned_zeros(shapes.get(name, vector), np.int64 if name in whole else np.float64)
-                    for name in State._fields))
+    state = State(
+        *(aligned_zeros(shapes.get(name, vector), np.int64 if name in whole else np.float64) for name in State._fields)
+    )
     for i in range(3):
         state.Q[:, i, i] = state.body_Q[:, :, i, i] = 1.0
     state.order[:], state.n_pairs[:] = elements, -1

@@ -121,14 +121,23 @@ class Rod:
             require_not_negative(name, getattr(self, name))
         gram = np.einsum("ijk,ljk->ilk", self.directors, self.directors) - np.eye(3)[:, :, None]
         if np.abs(gram).max() > 1e-9 or (np.linalg.det(self.directors.T) < 0.0).any():
-            raise ValueError("directors must be right-handed orthonormal rows d1, d2, d3; "
-                             f"their products are off by {np.abs(gram).max():.3g}")  # fmt: skip
+            raise ValueError(
+                "directors must be right-handed orthonormal rows d1, d2, d3; "
+                f"their products are off by {np.abs(gram).max():.3g}"
+            )
 
     @classmethod
     def straight(
-        cls, n_elements: int, *, start: ArrayLike, direction: ArrayLike, normal: ArrayLike, length: float,
-        radius: float | Array, **material: Any,
-    ) -> "Rod":  # fmt: skip
+        cls,
+        n_elements: int,
+        *,
+        start: ArrayLike,
+        direction: ArrayLike,
+        normal: ArrayLike,
+        length: float,
+        radius: float | Array,
+        **material: Any,
+    ) -> "Rod":
         """Return a straight rod of equal elements.
 
         Parameters
@@ -173,8 +182,10 @@ class Rod:
         d1 = up - tangents * (up * tangents).sum(axis=0)
         size = np.linalg.norm(d1, axis=0)
         if size.min() < 1e-6:
-            raise ValueError(f"normal {np.ravel(normal)} is parallel to element {int(size.argmin())}; "
-                             "choose one that is perpendicular to the rod")  # fmt: skip
+            raise ValueError(
+                f"normal {np.ravel(normal)} is parallel to element {int(size.argmin())}; "
+                "choose one that is perpendicular to the rod"
+            )
         d1 /= size
         directors = np.stack([d1, np.cross(tangents, d1, axis=0), tangents])
         return cls(position=nodes, directors=directors, radius=np.asarray(radius, dtype=np.float64), **material)

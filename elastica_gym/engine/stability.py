@@ -56,8 +56,11 @@ def limits(
         found += _rods(masses, [(i, j, law.stiffness, law.damping) for i in every for j in every[i:]])
     if scene is None:
         c, every = model.cylinders, range(model.cylinders.mass.size)
-        found += [_touch(masses, rod, b, c.rod_stiffness[b], c.rod_damping[b])
-                  for b in every for rod in range(model.first_slot.size)]  # fmt: skip
+        found += [
+            _touch(masses, rod, b, c.rod_stiffness[b], c.rod_damping[b])
+            for b in every
+            for rod in range(model.first_slot.size)
+        ]
         if model.planes.stiffness.size:
             found += [_ground(masses, b, c.ground_stiffness[b], c.ground_damping[b]) for b in every]
         return found
@@ -65,8 +68,7 @@ def limits(
     found += _rods(masses, _pairs(scene.rod_contacts))
     found += _bodies(masses, scene.body_contacts)
     planes = scene.body_planes
-    found += [_ground(masses, int(b), planes.stiffness[j], planes.damping[j])
-              for j, b in enumerate(scene.grounded)]  # fmt: skip
+    found += [_ground(masses, int(b), planes.stiffness[j], planes.damping[j]) for j, b in enumerate(scene.grounded)]
     found += [*_joints(masses, scene.joints), *_sides(masses, scene.sides)]
     return [*found, *_drag(masses, scene.drag), *_flows(masses, model, scene.flows)]
 
@@ -137,8 +139,11 @@ def _planes(masses: _Masses, planes: Planes, spans: Index) -> Iterator[Limit]:
 def _pairs(contacts: RodContacts) -> list[tuple[int, int, float, float]]:
     """Return the two rods of each contact between rods, and its stiffness and damping."""
     first = np.repeat(np.arange(contacts.row.size - 1), np.diff(contacts.row))
-    return list(zip(first.tolist(), contacts.other.tolist(), contacts.stiffness.tolist(), contacts.damping.tolist(),
-                    strict=True))  # fmt: skip
+    return list(
+        zip(
+            first.tolist(), contacts.other.tolist(), contacts.stiffness.tolist(), contacts.damping.tolist(), strict=True
+        )
+    )
 
 
 def _rods(masses: _Masses, pairs: list[tuple[int, int, float, float]]) -> Iterator[Limit]:
@@ -197,8 +202,10 @@ def _joints(masses: _Masses, joints: Joints) -> Iterator[Limit]:
 def _sides(masses: _Masses, sides: Sides) -> Iterator[Limit]:
     for j, (one, two) in enumerate(sides.element.tolist()):
         inverse = float(masses.element[one] + masses.element[two])
-        yield Limit(largest_step(sides.stiffness[j] * inverse, sides.damping[j] * inverse),
-                    f"a joint of {masses.name(one)} and {masses.name(two)}")  # fmt: skip
+        yield Limit(
+            largest_step(sides.stiffness[j] * inverse, sides.damping[j] * inverse),
+            f"a joint of {masses.name(one)} and {masses.name(two)}",
+        )
 
 
 def _drag(masses: _Masses, drag: Drag) -> Iterator[Limit]:

@@ -152,8 +152,10 @@ class Cylinder:
             require_positive(f"length of {name}", float(np.linalg.norm(getattr(self, name))))
         cosine = float(np.dot(self.normal, self.directors[2]) / np.linalg.norm(self.normal))
         if abs(cosine) > 1e-9:
-            raise ValueError(f"normal {self.normal} must be perpendicular to direction {self.direction}; "
-                             f"the cosine between them is {cosine:.3g}")  # fmt: skip
+            raise ValueError(
+                f"normal {self.normal} must be perpendicular to direction {self.direction}; "
+                f"the cosine between them is {cosine:.3g}"
+            )
 
     @property
     def directors(self) -> Array:

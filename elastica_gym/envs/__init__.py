@@ -7,6 +7,19 @@ from .registration import GOAL_IDS, IDS, register, register_all, registered_ids,
 from .single import SingleEnv
 from .task import Situation, Task, TerminationReason
 
-__all__ = ["GOAL_IDS", "IDS", "BatchEnv", "GoalTask", "SingleEnv", "Situation", "Task",
-           "TerminationReason", "document", "goal_conditioned", "register", "register_all", "registered_ids",
-           "task_of"]  # fmt: skip
+__all__ = [
+    "GOAL_IDS",
+    "IDS",
+    "BatchEnv",
+    "GoalTask",
+    "SingleEnv",
+    "Situation",
+    "Task",
+    "TerminationReason",
+    "document",
+    "goal_conditioned",
+    "register",
+    "register_all",
+    "registered_ids",
+    "task_of",
+]

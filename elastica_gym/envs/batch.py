@@ -34,8 +34,26 @@ CLOCK_PERIOD = 1.0
 RENDER_MODES = ("rgb_array",)
 """Ways to draw; of one animal, Gymnasium's wrappers show or collect the pictures"""
 
-PHYSICAL_STATE = ("x", "v", "Q", "w", "couple", "time", "step", "kappa", "normal_force", "radius", "length",
-                  "body_x", "body_v", "body_Q", "body_w", "body_contact", "body_touch", "rod_touch")  # fmt: skip
+PHYSICAL_STATE = (
+    "x",
+    "v",
+    "Q",
+    "w",
+    "couple",
+    "time",
+    "step",
+    "kappa",
+    "normal_force",
+    "radius",
+    "length",
+    "body_x",
+    "body_v",
+    "body_Q",
+    "body_w",
+    "body_contact",
+    "body_touch",
+    "rod_touch",
+)
 # the lists of pairs that may touch are not: they are checked against the positions, and any of them gives the same
 
 
@@ -86,16 +104,28 @@ class BatchEnv(VectorEnv):
     """
 
     def __init__(
-        self, task: Task, num_envs: int = 1, *, control_dt: float = CONTROL_DT, sim_dt: float | None = None,
-        duration: float | None = None, max_episode_steps: int | None = None, n_threads: int | None = None,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP, weights: dict[str, float] | None = None,
-        spread: str | None = None, body_kwargs: dict[str, Any] | None = None, render_mode: str | None = None,
+        self,
+        task: Task,
+        num_envs: int = 1,
+        *,
+        control_dt: float = CONTROL_DT,
+        sim_dt: float | None = None,
+        duration: float | None = None,
+        max_episode_steps: int | None = None,
+        n_threads: int | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        weights: dict[str, float] | None = None,
+        spread: str | None = None,
+        body_kwargs: dict[str, Any] | None = None,
+        render_mode: str | None = None,
         render_size: tuple[int, int] = (640, 360),
-    ) -> None:  # fmt: skip
+    ) -> None:
         _require_count("num_envs", num_envs, 4096)
         if render_mode not in (None, *RENDER_MODES):
-            raise ValueError(f"render_mode must be 'rgb_array' or None, not {render_mode!r}: gymnasium.make takes "
-                             "'human' and 'rgb_array_list', for one animal")  # fmt: skip
+            raise ValueError(
+                f"render_mode must be 'rgb_array' or None, not {render_mode!r}: gymnasium.make takes "
+                "'human' and 'rgb_array_list', for one animal"
+            )
         _require_size(render_size)
         self.task, self.num_envs, self.render_mode, self.render_size = task, num_envs, render_mode, render_size
         self._view: View | None = None
@@ -111,11 +141,18 @@ class BatchEnv(VectorEnv):
         self.n_threads = available_cpus() if n_threads is None else n_threads
         _require_count("n_threads", self.n_threads, 4096)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
-        self._set_times(control_dt, self.body.sim_dt if sim_dt is None else sim_dt,
-                        task.duration if duration is None else duration, max_episode_steps)  # fmt: skip
+        self._set_times(
+            control_dt,
+            self.body.sim_dt if sim_dt is None else sim_dt,
+            task.duration if duration is None else duration,
+            max_episode_steps,
+        )
         frames_per_second = round(1.0 / control_dt)
-        self.metadata = {"render_modes": list(RENDER_MODES), "render_fps": frames_per_second,
-                         "autoreset_mode": self.autoreset_mode}  # fmt: skip
+        self.metadata = {
+            "render_modes": list(RENDER_MODES),
+            "render_fps": frames_per_second,
+            "autoreset_mode": self.autoreset_mode,
+        }
         self._make_spaces()
         self._allocate()
 
@@ -163,8 +200,17 @@ class BatchEnv(VectorEnv):
         self.levels = np.zeros((n, N_ACTIVATIONS))
         self._observations = np.zeros((n, len(self.observation_names)), dtype=np.float32)
         self.integrator = Team(self.body.model, self.state, self.control, self.n_threads)
-        self._feel = Bound(feel, self.body.model, self.state, self.levels, self.body.senses, self.pose, self._low,
-                           self._high, self._observations)  # fmt: skip
+        self._feel = Bound(
+            feel,
+            self.body.model,
+            self.state,
+            self.levels,
+            self.body.senses,
+            self.pose,
+            self._low,
+            self._high,
+            self._observations,
+        )
         self._distance = np.zeros(n)
         self._ended = np.zeros(n, dtype=bool)
         self._generators: list[np.random.Generator] | None = None
@@ -197,8 +243,10 @@ class BatchEnv(VectorEnv):
         """
         mask = _reset_mask(options or {}, self.num_envs)
         if self._generators is None and not mask.all():
-            raise ValueError("the first reset must start every environment, but reset_mask leaves out "
-                             f"{np.flatnonzero(~mask).tolist()}")  # fmt: skip
+            raise ValueError(
+                "the first reset must start every environment, but reset_mask leaves out "
+                f"{np.flatnonzero(~mask).tolist()}"
+            )
         self._seed(seed, mask)
         self._start(mask)
         info = self._first_info()
@@ -269,8 +317,9 @@ class BatchEnv(VectorEnv):
             If there was no reset, or MuJoCo finds nothing to draw with.
         """
         if self.render_mode is None:
-            logger.warn("render draws nothing where no render_mode was given: make the environment with "
-                        "render_mode='rgb_array'")  # fmt: skip
+            logger.warn(
+                "render draws nothing where no render_mode was given: make the environment with render_mode='rgb_array'"
+            )
             return None
         if self._generators is None:
             raise RuntimeError("call reset before render")
@@ -328,8 +377,17 @@ class BatchEnv(VectorEnv):
     def situation(self) -> Situation:
         """Return where the batch stands."""
         left = np.maximum(1.0 - self.elapsed / self._n_steps, 0.0)
-        return Situation(self.pose, self._before, self.goal, self.progress, self._progress_before, self.activations,
-                         left, self.control_dt, self.body)  # fmt: skip
+        return Situation(
+            self.pose,
+            self._before,
+            self.goal,
+            self.progress,
+            self._progress_before,
+            self.activations,
+            left,
+            self.control_dt,
+            self.body,
+        )
 
     def _judge(self, now: Situation, sound: Mask) -> tuple[Array, dict[str, Any]]:
         """Return the rewards and an info with each of their terms; where physics has failed, only the penalty."""
@@ -435,15 +493,17 @@ class BatchEnv(VectorEnv):
 
     def get_state(self) -> dict[str, Any]:
         """Return all that decides what comes next, as copies; `set_state` goes on from it bit for bit."""
-        return deepcopy({
-            "made_as": self._made_as(),
-            "physics": {name: getattr(self.state, name) for name in PHYSICAL_STATE},
-            "control": tuple(self.control),
-            "episodes": {name: getattr(self, name) for name in _EPISODE_STATE},
-            "poses": [tuple(self.pose), tuple(self._before)],
-            "generators": None if self._generators is None else [g.bit_generator.state for g in self._generators],
-            "seeds": self._seeds,
-        })  # fmt: skip
+        return deepcopy(
+            {
+                "made_as": self._made_as(),
+                "physics": {name: getattr(self.state, name) for name in PHYSICAL_STATE},
+                "control": tuple(self.control),
+                "episodes": {name: getattr(self, name) for name in _EPISODE_STATE},
+                "poses": [tuple(self.pose), tuple(self._before)],
+                "generators": None if self._generators is None else [g.bit_generator.state for g in self._generators],
+                "seeds": self._seeds,
+            }
+        )
 
     def _made_as(self) -> dict[str, Any]:
         names = ("spread", "num_envs", "control_dt", "sim_dt", "duration", "max_episode_steps")
@@ -499,8 +559,17 @@ class BatchEnv(VectorEnv):
         return self.task.target(self.goal)
 
 
-_EPISODE_STATE = ("goal", "progress", "_progress_before", "elapsed", "activations", "levels", "_observations",
-                  "_distance", "_ended")  # fmt: skip
+_EPISODE_STATE = (
+    "goal",
+    "progress",
+    "_progress_before",
+    "elapsed",
+    "activations",
+    "levels",
+    "_observations",
+    "_distance",
+    "_ended",
+)
 
 
 def _require_count(name: str, value: int, most: int) -> None:

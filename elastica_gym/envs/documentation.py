@@ -28,25 +28,42 @@ def document(task: Task) -> str:
     """Return what a task observes, is rewarded for, and ends with, as tables in Markdown."""
     body = task.make_body()
     weights = [f"| {name} | {weight:g} |" for name, weight in task.reward_weights.items()]
-    reasons = [f"{number} {name}" for number, name in enumerate(task.termination_reasons)
-               if name != "success" or task.ends_on_success]  # fmt: skip
-    return "\n".join([
-        *_section("Action"),
-        f"``Box(-1, 1, ({len(activation_names(body.arms))},), float32)``: the activations that the muscles are "
-        "commanded to; see `elastica_gym.bodies.muscles`.", "",
-        *_section("Observation"),
-        "``Box(float32)``, clipped to its range.", "", "| index | meaning | unit | range |", "|---|---|---|---|",
-        *_rows(task.observations(body)), "",
-        *_section("Rewards"),
-        "The sum of these terms, each of which is in the info as ``reward_<term>`` with its weight:", "",
-        "| term | weight |", "|---|---|", *weights, "",
-        "The info also has ``distance`` [m]; ``is_success``; and",
-        f"``termination_reason``, a number: {', '.join(reasons[:-1])} or {reasons[-1]}.", "",
-        *_section("Starting state"),
-        f"``spread`` is one of {', '.join(task.starts)}.", "",
-        *_section("Episode end"),
-        f"Truncated after {task.duration:g} s.", "",
-    ])  # fmt: skip
+    reasons = [
+        f"{number} {name}"
+        for number, name in enumerate(task.termination_reasons)
+        if name != "success" or task.ends_on_success
+    ]
+    return "\n".join(
+        [
+            *_section("Action"),
+            f"``Box(-1, 1, ({len(activation_names(body.arms))},), float32)``: the activations that the muscles are "
+            "commanded to; see `elastica_gym.bodies.muscles`.",
+            "",
+            *_section("Observation"),
+            "``Box(float32)``, clipped to its range.",
+            "",
+            "| index | meaning | unit | range |",
+            "|---|---|---|---|",
+            *_rows(task.observations(body)),
+            "",
+            *_section("Rewards"),
+            "The sum of these terms, each of which is in the info as ``reward_<term>`` with its weight:",
+            "",
+            "| term | weight |",
+            "|---|---|",
+            *weights,
+            "",
+            "The info also has ``distance`` [m]; ``is_success``; and",
+            f"``termination_reason``, a number: {', '.join(reasons[:-1])} or {reasons[-1]}.",
+            "",
+            *_section("Starting state"),
+            f"``spread`` is one of {', '.join(task.starts)}.",
+            "",
+            *_section("Episode end"),
+            f"Truncated after {task.duration:g} s.",
+            "",
+        ]
+    )
 
 
 def _section(title: str) -> list[str]:

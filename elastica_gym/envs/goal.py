@@ -152,14 +152,21 @@ def goal_conditioned(
         Distance of the head from the place that is near enough, in body lengths.
     """
     own = dict(
-        name=f"{task.name}Goal", base=task.name, goal_size=3, draw_goal=draw_goal, see_goal=see_goal,
+        name=f"{task.name}Goal",
+        base=task.name,
+        goal_size=3,
+        draw_goal=draw_goal,
+        see_goal=see_goal,
         goal_bounds=((-1.0, 1.0),) * 2 + ((-4.0, 4.0),) * 4,
         goal_names=("heading/x", "heading/z", "achieved/x", "achieved/z", "desired/x", "desired/z"),
         reward_terms={"reached": partial(reached, tolerance=tolerance)},
-        reward_weights={"reached": 1.0, "diverged": 0.0}, distance=distance,
-        succeeds=partial(succeeds, tolerance=tolerance), ends_on_success=True, target=snake_reach.target,
+        reward_weights={"reached": 1.0, "diverged": 0.0},
+        distance=distance,
+        succeeds=partial(succeeds, tolerance=tolerance),
+        ends_on_success=True,
+        target=snake_reach.target,
         tolerance=tolerance,
-    )  # fmt: skip
+    )
     return GoalTask(**{each.name: getattr(task, each.name) for each in fields(task)} | own)
 
 
@@ -185,8 +192,10 @@ def _space(flat: Any) -> Dict:
 
 def _refuse_weights(arguments: dict[str, Any]) -> None:
     if "weights" in arguments:
-        raise ValueError("weights cannot be given where goals can be changed: the reward is 1 at the goal and else 0, "
-                         f"as compute_reward tells it, not {arguments['weights']!r}")  # fmt: skip
+        raise ValueError(
+            "weights cannot be given where goals can be changed: the reward is 1 at the goal and else 0, "
+            f"as compute_reward tells it, not {arguments['weights']!r}"
+        )
 
 
 # libraries such as skrl tell an environment by its class's direct bases, of which Gymnasium's has to be one

@@ -91,14 +91,25 @@ def follow(situation: Situation, state: State) -> Array:
     head_away = _away(s.pose.head, s.goal[:, 0], s.goal[:, 1])
     crawls = (head_away >= CRAWLED[0]) & (_away(s.pose.centre, s.goal[:, 2], s.goal[:, 3]) >= CRAWLED[1])
     carried = held.touching.any(axis=1) & (held.tilt <= UPRIGHT) & ~begins
-    return np.stack(Handling(
-        reach=_reach(held.gaps, arm_elements(s.body)), span=span,
-        winding=held.windings.max(axis=1), first=first, second=second, slack=slack,
-        grabbed=grabbed.astype(np.float64), base_x=base_x, base_z=base_z, tilt=held.tilt,
-        moved_x=old.moved_x + np.where(carried, base_x - old.base_x, 0.0),
-        moved_z=old.moved_z + np.where(carried, base_z - old.base_z, 0.0),
-        head_way=np.maximum(old.head_way, head_away), crawled=np.maximum(old.crawled, crawls),
-    ), axis=1)  # fmt: skip
+    return np.stack(
+        Handling(
+            reach=_reach(held.gaps, arm_elements(s.body)),
+            span=span,
+            winding=held.windings.max(axis=1),
+            first=first,
+            second=second,
+            slack=slack,
+            grabbed=grabbed.astype(np.float64),
+            base_x=base_x,
+            base_z=base_z,
+            tilt=held.tilt,
+            moved_x=old.moved_x + np.where(carried, base_x - old.base_x, 0.0),
+            moved_z=old.moved_z + np.where(carried, base_z - old.base_z, 0.0),
+            head_way=np.maximum(old.head_way, head_away),
+            crawled=np.maximum(old.crawled, crawls),
+        ),
+        axis=1,
+    )
 
 
 def _reach(gaps: Array, arms: Index) -> Array:
@@ -245,8 +256,16 @@ def fallen(situation: Situation) -> Array:
 
 
 handling_task = functools.partial(
-    Task, make_body=octopus, goal_size=GOAL_SIZE, draw_goal=draw_goal, goal_names=GOAL_NAMES, goal_bounds=GOAL_BOUNDS,
-    progress_names=Handling._fields, follow=follow, ends_on_success=True,
-    failures={"toppled": has_toppled, "fallen": has_fallen}, target=no_target,
-)  # fmt: skip
+    Task,
+    make_body=octopus,
+    goal_size=GOAL_SIZE,
+    draw_goal=draw_goal,
+    goal_names=GOAL_NAMES,
+    goal_bounds=GOAL_BOUNDS,
+    progress_names=Handling._fields,
+    follow=follow,
+    ends_on_success=True,
+    failures={"toppled": has_toppled, "fallen": has_fallen},
+    target=no_target,
+)
 """Make a task of handling the object; what these have in common is given, and may be given otherwise"""

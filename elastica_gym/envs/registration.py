@@ -24,11 +24,23 @@ from .tasks import (
 SHIPPED = {
     f"elastica_gym/{task.name}-v1": task
     for task in (
-        *(module.TASK for module in (snake_forward, snake_reach, snake_steer, octopus_crawl, octopus_reach,
-                                     octopus_move, octopus_grab, octopus_return, octopus_fetch)),
+        *(
+            module.TASK
+            for module in (
+                snake_forward,
+                snake_reach,
+                snake_steer,
+                octopus_crawl,
+                octopus_reach,
+                octopus_move,
+                octopus_grab,
+                octopus_return,
+                octopus_fetch,
+            )
+        ),
         *GOAL_TASKS,
     )
-}  # fmt: skip
+}
 IDS = tuple(env_id for env_id, task in SHIPPED.items() if not isinstance(task, GoalTask))
 GOAL_IDS = tuple(env_id for env_id, task in SHIPPED.items() if isinstance(task, GoalTask))
 """Those whose observation is a dict with an achieved and a desired goal"""

@@ -104,8 +104,12 @@ def with_object_to_the_right(rng: np.random.Generator, body: Body, state: State,
 def _place(body: Body, state: State, i: int, away: float, angle: float, clear: float = CLEAR) -> bool:
     """Put the first object at a distance from the head and an angle to the right [m, rad], if it is clear there."""
     x, senses = state.x[i], body.senses
-    forward = np.array([x[c, senses.front[0] : senses.front[1] + 1].mean()
-                        - x[c, senses.rear[0] : senses.rear[1] + 1].mean() for c in (0, 2)])  # fmt: skip
+    forward = np.array(
+        [
+            x[c, senses.front[0] : senses.front[1] + 1].mean() - x[c, senses.rear[0] : senses.rear[1] + 1].mean()
+            for c in (0, 2)
+        ]
+    )
     forward /= np.linalg.norm(forward)
     cosine, sine = away * np.cos(angle), away * np.sin(angle)
     way = cosine * forward[0] - sine * forward[1], sine * forward[0] + cosine * forward[1]
@@ -153,9 +157,14 @@ def _rotate(angle: float, state: State, i: int, nodes: slice) -> None:
     cosine, sine = np.cos(angle), np.sin(angle)
     contact = state.body_contact[i]
     # (each with the axis of its vectors first)
-    for vectors in (state.x[i, :, nodes], state.Q[i, :, :, nodes].transpose(1, 0, 2), state.body_x[i].T,
-                    state.body_Q[i].transpose(2, 0, 1), contact[..., 1:4].transpose(2, 0, 1),
-                    contact[..., 4:7].transpose(2, 0, 1)):  # fmt: skip
+    for vectors in (
+        state.x[i, :, nodes],
+        state.Q[i, :, :, nodes].transpose(1, 0, 2),
+        state.body_x[i].T,
+        state.body_Q[i].transpose(2, 0, 1),
+        contact[..., 1:4].transpose(2, 0, 1),
+        contact[..., 4:7].transpose(2, 0, 1),
+    ):
         x, z = vectors[0].copy(), vectors[2].copy()
         vectors[0], vectors[2] = x * cosine - z * sine, x * sine + z * cosine
 
@@ -187,6 +196,8 @@ def holding(body: Body) -> tuple[State, Array]:
 
 
 OBJECT_STARTS: dict[str, Callable[[np.random.Generator, Body, State, int], Array | None]] = {
-    "arc": with_object_on_the_arc, "anywhere": with_object_anywhere, "default": with_object_to_the_right,
-}  # fmt: skip
+    "arc": with_object_on_the_arc,
+    "anywhere": with_object_anywhere,
+    "default": with_object_to_the_right,
+}
 """By name of the ``spread``; the default is that of the 2020 hackathon"""

@@ -56,9 +56,14 @@ class Situation(NamedTuple):
         """Return views of some environments."""
         s = self
         return s._replace(
-            pose=s.pose.only(envs), before=s.before.only(envs), goal=s.goal[envs], progress=s.progress[envs],
-            progress_before=s.progress_before[envs], activations=s.activations[envs], time_left=s.time_left[envs],
-        )  # fmt: skip
+            pose=s.pose.only(envs),
+            before=s.before.only(envs),
+            goal=s.goal[envs],
+            progress=s.progress[envs],
+            progress_before=s.progress_before[envs],
+            activations=s.activations[envs],
+            time_left=s.time_left[envs],
+        )
 
 
 def follow_nothing(situation: Situation, state: State) -> Array:
@@ -135,16 +140,22 @@ class Task:
         if not self.starts:
             raise ValueError("starts must have at least one way to draw a start")
         if len(self.goal_bounds) != len(self.goal_names):
-            raise ValueError(f"goal_bounds must have a least and a largest value for each of {self.goal_names}, "
-                             f"not {self.goal_bounds}")  # fmt: skip
+            raise ValueError(
+                f"goal_bounds must have a least and a largest value for each of {self.goal_names}, "
+                f"not {self.goal_bounds}"
+            )
         weighted = {*self.reward_terms, "diverged"}
         if set(self.reward_weights) != weighted:
-            raise ValueError(f"reward_weights must have a weight for each of {', '.join(sorted(weighted))}, not for "
-                             f"{', '.join(self.reward_weights)}")  # fmt: skip
+            raise ValueError(
+                f"reward_weights must have a weight for each of {', '.join(sorted(weighted))}, not for "
+                f"{', '.join(self.reward_weights)}"
+            )
         reasons = self.termination_reasons
         if len(set(reasons)) < len(reasons):
-            raise ValueError(f"failures must have other names than {', '.join(reasons[: len(TerminationReason)])}, "
-                             f"not {', '.join(self.failures)}")  # fmt: skip
+            raise ValueError(
+                f"failures must have other names than {', '.join(reasons[: len(TerminationReason)])}, "
+                f"not {', '.join(self.failures)}"
+            )
 
     @property
     def termination_reasons(self) -> tuple[str, ...]:

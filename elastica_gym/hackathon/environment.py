@@ -192,8 +192,10 @@ class Environment:
             If no data were collected.
         """
         if not self._moments:
-            raise RuntimeError("there is nothing to show: make the Environment with "
-                               "COLLECT_DATA_FOR_POSTPROCESSING=True, and call reset")  # fmt: skip
+            raise RuntimeError(
+                "there is nothing to show: make the Environment with "
+                "COLLECT_DATA_FOR_POSTPROCESSING=True, and call reset"
+            )
         from ..viz import render_frames, write_video
 
         return write_video(render_frames(self.rollout()), filename_video, fps=FRAMES_PER_SECOND)
@@ -206,11 +208,21 @@ class Environment:
         series = {name: np.stack([moment[name] for moment in self._moments]) for name in self._moments[0]}
         thing = body.cylinders[0]
         return Rollout(
-            name="hackathon", body_length=body.senses.length, elements_per_rod=(N_ELEMENTS,), head_node=MIDDLE,
-            step=np.arange(len(self._moments)), sim_time=np.arange(len(self._moments)) / FRAMES_PER_SECOND,
-            object_length=np.array([thing.length]), object_radius=np.array([thing.radius]), direction=None,
-            target=None, target_radius=0.0, rewards={}, activation_names=activation_names(body.arms), **series,
-        )  # fmt: skip
+            name="hackathon",
+            body_length=body.senses.length,
+            elements_per_rod=(N_ELEMENTS,),
+            head_node=MIDDLE,
+            step=np.arange(len(self._moments)),
+            sim_time=np.arange(len(self._moments)) / FRAMES_PER_SECOND,
+            object_length=np.array([thing.length]),
+            object_radius=np.array([thing.radius]),
+            direction=None,
+            target=None,
+            target_radius=0.0,
+            rewards={},
+            activation_names=activation_names(body.arms),
+            **series,
+        )
 
     def _activate(self, given: Sequence[Sequence[ArrayLike]]) -> None:
         """Let the muscles follow activations, clipped to [-1, 1]."""
@@ -229,12 +241,17 @@ class Environment:
     def _keep(self) -> None:
         if self._keeps:
             state, (nodes, elements) = self._state, self._slices()
-            self._moments.append({
-                "nodes": state.x[0, :, nodes].T.copy(), "radii": state.radius[0, elements].copy(),
-                "normal_force": state.normal_force[0, elements].copy(),
-                "object_force": state.body_touch[0, elements].copy(), "object_centre": state.body_x[0].copy(),
-                "object_axis": state.body_Q[0, :, 2].copy(), "activations": self._activations.ravel().copy(),
-            })  # fmt: skip
+            self._moments.append(
+                {
+                    "nodes": state.x[0, :, nodes].T.copy(),
+                    "radii": state.radius[0, elements].copy(),
+                    "normal_force": state.normal_force[0, elements].copy(),
+                    "object_force": state.body_touch[0, elements].copy(),
+                    "object_centre": state.body_x[0].copy(),
+                    "object_axis": state.body_Q[0, :, 2].copy(),
+                    "activations": self._activations.ravel().copy(),
+                }
+            )
 
     def _slices(self) -> tuple[slice, slice]:
         """Return the slots of nodes and of elements."""
@@ -243,16 +260,22 @@ class Environment:
     def _rod(self) -> ShearableRod:
         state, (nodes, elements) = self._state, self._slices()
         return ShearableRod(
-            position_collection=state.x[0, :, nodes], velocity_collection=state.v[0, :, nodes],
-            director_collection=state.Q[0, :, :, elements], omega_collection=state.w[0, :, elements],
-            kappa=state.kappa[0, :, self._first : self._first + N_ELEMENTS - 1], lengths=state.length[0, elements],
+            position_collection=state.x[0, :, nodes],
+            velocity_collection=state.v[0, :, nodes],
+            director_collection=state.Q[0, :, :, elements],
+            omega_collection=state.w[0, :, elements],
+            kappa=state.kappa[0, :, self._first : self._first + N_ELEMENTS - 1],
+            lengths=state.length[0, elements],
             radius=state.radius[0, elements],
-        )  # fmt: skip
+        )
 
     def _object(self) -> RigidBody:
         state, thing = self._state, self._body.cylinders[0]
         return RigidBody(
-            position_collection=state.body_x[0].T, velocity_collection=state.body_v[0].T,
-            director_collection=state.body_Q[0].transpose(1, 2, 0), omega_collection=state.body_w[0].T,
-            length=thing.length, radius=thing.radius,
-        )  # fmt: skip
+            position_collection=state.body_x[0].T,
+            velocity_collection=state.body_v[0].T,
+            director_collection=state.body_Q[0].transpose(1, 2, 0),
+            omega_collection=state.body_w[0].T,
+            length=thing.length,
+            radius=thing.radius,
+        )

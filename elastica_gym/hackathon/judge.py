@@ -22,9 +22,15 @@ KINDS = ("default", "arc", "anywhere")
 
 
 def judge(
-    path: Path, env_id: str, *, targets: int, target_seed: int, record: Path | None = None, n_threads: int = 2,
+    path: Path,
+    env_id: str,
+    *,
+    targets: int,
+    target_seed: int,
+    record: Path | None = None,
+    n_threads: int = 2,
     **env_kwargs: Any,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Return what a policy scores, ready for JSON.
 
     Parameters
@@ -59,16 +65,25 @@ def judge(
                 seeds = target_seeds(target_seed, stream, INITIAL_STATES if spread == "default" else targets)
                 with _Watch(f"{spread} target", record and record / f"{spread}.rrd") as watch:
                     policy.begin(len(seeds))
-                    samples = run_trials(policy, env_id, seeds=seeds, watch=watch, spread=spread, n_threads=n_threads,
-                                         **env_kwargs)  # fmt: skip
+                    samples = run_trials(
+                        policy, env_id, seeds=seeds, watch=watch, spread=spread, n_threads=n_threads, **env_kwargs
+                    )
                 held[spread] = goals_held(samples)
         except PolicyError as trouble:
             error = str(trouble)
     if error:
         held = {spread: np.zeros((len(GOALS), 1), dtype=bool) for spread in KINDS}
     counts = {spread: dict(zip(GOALS, mask.sum(axis=1).tolist(), strict=True)) for spread, mask in held.items()}
-    return {**score(held), "error": error, "held": counts, "policy": str(path), "env": env_id,
-            "initial_states": INITIAL_STATES, "targets": targets, "target_seed": target_seed}  # fmt: skip
+    return {
+        **score(held),
+        "error": error,
+        "held": counts,
+        "policy": str(path),
+        "env": env_id,
+        "initial_states": INITIAL_STATES,
+        "targets": targets,
+        "target_seed": target_seed,
+    }
 
 
 def print_score(result: dict[str, Any]) -> None:

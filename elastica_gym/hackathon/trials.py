@@ -85,9 +85,16 @@ class Sampler:
         x, mass = state.x[:n, plane], body.model.mass
         hold = grip(body, State._make(field[:n] for field in state))
         seen: tuple[Any, ...] = (
-            ~self.is_over[going], x[..., body.senses.head], (x * mass).sum(axis=2) / mass.sum(), hold.head_gap,
-            hold.touching.any(axis=1), hold.base[:, plane], hold.tilt, hold.spans, hold.counts,
-        )  # fmt: skip
+            ~self.is_over[going],
+            x[..., body.senses.head],
+            (x * mass).sum(axis=2) / mass.sum(),
+            hold.head_gap,
+            hold.touching.any(axis=1),
+            hold.base[:, plane],
+            hold.tilt,
+            hold.spans,
+            hold.counts,
+        )
         self._times.append(float(state.time[:n].max()))
         if self._moments:
             new, seen = seen, tuple(map(np.copy, self._moments[-1]))
@@ -99,9 +106,13 @@ class Sampler:
 
 
 def run_trials(
-    actor: Actor, env_id: str, *, seeds: Sequence[int], watch: Callable[[Any, Sampler, dict[str, Any] | None], None],
+    actor: Actor,
+    env_id: str,
+    *,
+    seeds: Sequence[int],
+    watch: Callable[[Any, Sampler, dict[str, Any] | None], None],
     **env_kwargs: Any,
-) -> Samples:  # fmt: skip
+) -> Samples:
     """Run an episode for each seed, side by side, and return their samples.
 
     They go on to their time limit, even where the task would end them with success, but for those that have failed or

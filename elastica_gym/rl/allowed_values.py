@@ -202,7 +202,8 @@ COMMON: dict[str, Allowed] = {
     "stats_window_size": whole(1),
 }
 ALLOWED: dict[str, dict[str, Allowed]] = {
-    "ppo": COMMON | {
+    "ppo": COMMON
+    | {
         "n_epochs": whole(1),
         "gae_lambda": FRACTION,
         "clip_range": either(POSITIVE, prefixed("lin_", POSITIVE)),
@@ -214,7 +215,8 @@ ALLOWED: dict[str, dict[str, Allowed]] = {
         "target_kl": either(POSITIVE, NONE),
         "rollout_buffer_kwargs": MAPPING,
     },
-    "sac": COMMON | {
+    "sac": COMMON
+    | {
         "buffer_size": whole(1),
         "learning_starts": whole(0),
         "tau": FRACTION,
@@ -227,12 +229,16 @@ ALLOWED: dict[str, dict[str, Allowed]] = {
         "use_sde_at_warmup": TRUTH,
         "replay_buffer_kwargs": MAPPING,
     },
-}  # fmt: skip
+}
 """Of each algorithm, what each key of its configuration must be"""
 
 NORMALIZE: dict[str, Allowed] = {
-    "norm_obs": TRUTH, "norm_reward": TRUTH, "clip_obs": POSITIVE, "clip_reward": POSITIVE, "epsilon": POSITIVE,
-}  # fmt: skip
+    "norm_obs": TRUTH,
+    "norm_reward": TRUTH,
+    "clip_obs": POSITIVE,
+    "clip_reward": POSITIVE,
+    "epsilon": POSITIVE,
+}
 """Keys of ``normalize``, the arguments of ``VecNormalize``"""
 
 
@@ -251,5 +257,5 @@ def policy_allowed(algo: str, known: set[str]) -> dict[str, Allowed]:
         "periods": list_of("a list of times above 0 [s]", POSITIVE),
         **dict.fromkeys(("ortho_init", "full_std", "use_sde", "use_expln", "squash_output"), TRUTH),
         **dict.fromkeys(("share_features_extractor", "normalize_images"), TRUTH),
-    }  # fmt: skip
+    }
     return {name: rules.get(name, anything) for name in known}

@@ -102,9 +102,15 @@ def confidence(values: np.ndarray) -> float:
 
 
 def evaluate(
-    policy: "Policy", env_id: str, *, episodes: int, seed: int, n_threads: int = 2, env_kwargs: dict | None = None,
+    policy: "Policy",
+    env_id: str,
+    *,
+    episodes: int,
+    seed: int,
+    n_threads: int = 2,
+    env_kwargs: dict | None = None,
     show: Callable[[float], object] | None = None,
-) -> Evaluation:  # fmt: skip
+) -> Evaluation:
     """Run `policy` for `episodes` episodes of `env_id`, side by side; episode i has the seed ``seed + i``.
 
     What an episode comes to depends on its seed alone, and not on how many run beside it. `show` is called often, with
@@ -128,9 +134,13 @@ def evaluate(
 
 
 def _evaluate_batch(
-    policy: "Policy", env_id: str, seeds: list[int], n_threads: int, env_kwargs: dict[str, Any],
+    policy: "Policy",
+    env_id: str,
+    seeds: list[int],
+    n_threads: int,
+    env_kwargs: dict[str, Any],
     show: Callable[[float], object],
-) -> Evaluation:  # fmt: skip
+) -> Evaluation:
     from .vec_env import make_batch_vec_env
 
     env = make_batch_vec_env(env_id, n_envs=len(seeds), n_threads=n_threads, **env_kwargs)

@@ -42,9 +42,15 @@ def check_film(path: Path, size: tuple[int, int]) -> None:
 
 
 def film(
-    policy: "Policy", env_id: str, path: Path, *, seed: int, every: int = 1, size: tuple[int, int] = SIZE,
+    policy: "Policy",
+    env_id: str,
+    path: Path,
+    *,
+    seed: int,
+    every: int = 1,
+    size: tuple[int, int] = SIZE,
     env_kwargs: dict[str, Any] | None = None,
-) -> Path:  # fmt: skip
+) -> Path:
     """Run an episode, draw it, write it to a file, and say where that is.
 
     Parameters
@@ -102,9 +108,7 @@ def _write_gif(frames: np.ndarray, path: Path, seconds: float) -> None:
     # one palette for all, or colours flicker
     palette = Image.fromarray(np.concatenate(frames[:: max(1, len(frames) // 8)])).quantize(COLORS)
     pictures = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
-    pictures[0].save(
-        path, save_all=True, append_images=pictures[1:], duration=1000.0 * seconds, loop=0, optimize=True
-    )
+    pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=1000.0 * seconds, loop=0, optimize=True)
 
 
 def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs: dict[str, Any]) -> Path | None:

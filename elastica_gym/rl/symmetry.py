@@ -20,8 +20,10 @@ def named(policy: Any, space: spaces.Space) -> NamedBox:
         If it is another, as that of a wrapper which changes observations or actions.
     """
     if not isinstance(space, NamedBox):
-        raise ValueError(f"{type(policy).__name__} needs the spaces of an elastica_gym environment, not {space}: "
-                         "it does not work through wrappers that change observations or actions")  # fmt: skip
+        raise ValueError(
+            f"{type(policy).__name__} needs the spaces of an elastica_gym environment, not {space}: "
+            "it does not work through wrappers that change observations or actions"
+        )
     return space
 
 

@@ -62,9 +62,7 @@ class Budget:
         Environment steps that the budget does not count, those of imitation.
     """
 
-    def __init__(
-        self, *, steps: int | None, minutes: float | None, seconds_before: float = 0.0, free_steps: int = 0
-    ):
+    def __init__(self, *, steps: int | None, minutes: float | None, seconds_before: float = 0.0, free_steps: int = 0):
         self.steps = steps
         self.minutes = minutes
         self.free_steps = free_steps
@@ -112,9 +110,7 @@ class Training:
         # the model has seeded them with its own seed and those that follow, of which runs would share most
         self.adapter.seed(training_seeds(config["seed"], 0, self.adapter.num_envs))
         self.model.set_logger(Logger(folder=None, output_formats=[]))
-        self.episodes = Episodes(
-            longest=self.adapter.batch.max_episode_steps, window=self.model._stats_window_size
-        )
+        self.episodes = Episodes(longest=self.adapter.batch.max_episode_steps, window=self.model._stats_window_size)
         if checkpoint is not None:
             saved = self._load_state(checkpoint)
         self.metrics = Table(folder / METRICS, size=saved["table_sizes"][0])
@@ -171,8 +167,9 @@ class Training:
         except (RuntimeError, ValueError) as error:
             absent, unknown = [str(error)], []
         if set(absent) - {"log_std"} or unknown:
-            raise BadInputError(f"The networks of {start}, {algo} on {env_id}, do not fit: "
-                                f"{', '.join([*absent, *unknown])}")  # fmt: skip
+            raise BadInputError(
+                f"The networks of {start}, {algo} on {env_id}, do not fit: {', '.join([*absent, *unknown])}"
+            )
         normalize = self.model.get_vec_normalize_env()
         if normalize is not None and known is not None:
             normalize.obs_rms = transfer.statistics(known, len(now), where)
@@ -241,9 +238,11 @@ class Training:
             with ProgressDisplay() as self.display:
                 self._compile()
                 self.budget = Budget(
-                    steps=self.config["steps"], minutes=self.config["minutes"], seconds_before=self._seconds_before,
+                    steps=self.config["steps"],
+                    minutes=self.config["minutes"],
+                    seconds_before=self._seconds_before,
                     free_steps=self._imitated,
-                )  # fmt: skip
+                )
                 if self.config.get("imitate") and not self._imitated:
                     self._imitate()
                 finished = self._loop()
@@ -270,8 +269,14 @@ class Training:
             self._evaluate_when_due(part)
             return not self._stop
 
-        imitate(self.model, self.adapter, steps=self.config["imitate"], show=self.display.update,
-                after_round=after_round, goes_on=self._known_env == self.config["env"])  # fmt: skip
+        imitate(
+            self.model,
+            self.adapter,
+            steps=self.config["imitate"],
+            show=self.display.update,
+            after_round=after_round,
+            goes_on=self._known_env == self.config["env"],
+        )
         self._imitated = 0 if self._stop else self.model.num_timesteps
         self.budget.free_steps = self.model.num_timesteps
         self._pass_points(self.spent)

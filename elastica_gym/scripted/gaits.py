@@ -95,17 +95,23 @@ def wave_couples(rod: Rod, phases: Array, wave: Wave = SEED_WAVE) -> Array:
 
 
 OCTOPUS_STROKES = {
-    "left": (0.8, (
-        (-0.11, -1.71, -1.45, -0.72, 0.52, 0.02),
-        (0.42, -0.18, -0.25, 0.68, 0.42, -0.86),
-        (0.12, -0.33, 1.21, -1.68, 0.33, -0.47),
-    )),
-    "right": (0.37, (
-        (1.02, 1.57, 0.53, -0.74, -1.52, 0.51),
-        (1.4, -0.19, -0.7, 0.29, -0.95, 0.08),
-        (-0.71, 0.46, -0.43, 1.71, -1.63, 1.62),
-    )),
-}  # fmt: skip
+    "left": (
+        0.8,
+        (
+            (-0.11, -1.71, -1.45, -0.72, 0.52, 0.02),
+            (0.42, -0.18, -0.25, 0.68, 0.42, -0.86),
+            (0.12, -0.33, 1.21, -1.68, 0.33, -0.47),
+        ),
+    ),
+    "right": (
+        0.37,
+        (
+            (1.02, 1.57, 0.53, -0.74, -1.52, 0.51),
+            (1.4, -0.19, -0.7, 0.29, -0.95, 0.08),
+            (-0.71, 0.46, -0.43, 1.71, -1.63, 1.62),
+        ),
+    ),
+}
 """The scripted crawls of the octopus: period [s], and offset, sine and cosine of six activations of both arms alike,
 the first three functions about the normal and about the binormal. The means of 240 trials each of CMA-ES on the way
 made in 6 s without toppling, to the left with periods from 0.8 s"""

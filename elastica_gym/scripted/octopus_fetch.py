@@ -67,17 +67,25 @@ EMPTY = (0.9, 1)
 """Activation from which on an arm has missed, and lets go, where no more parts than this touch the object"""
 
 CARRYING = {
-    "ahead": ((0.41, 0.16), 0.25, (
-        (1.56, 0.67, -0.66, -0.76, 0.98, 1.83, 0.44, -3.43, -1.56),
-        (1.85, 1.95, -0.02, -1.18, -2.22, -1.44, 1.38, -1.8, -0.22),
-        (-1.72, 1.12, -1.87, 1.27, -2.6, 0.0, -0.51, 0.95, -0.73),
-    )),
-    "right": ((-0.05, 0.49), 0.25, (
-        (1.14, 0.32, -1.12, -0.67, 0.95, 3.2, -0.05, -3.46, -1.86),
-        (1.81, 1.3, -0.58, -0.85, -2.76, -1.94, 1.45, -2.27, 0.02),
-        (-0.67, 0.78, -0.54, 0.74, -2.8, 0.01, -0.79, 1.3, -1.7),
-    )),
-}  # fmt: skip
+    "ahead": (
+        (0.41, 0.16),
+        0.25,
+        (
+            (1.56, 0.67, -0.66, -0.76, 0.98, 1.83, 0.44, -3.43, -1.56),
+            (1.85, 1.95, -0.02, -1.18, -2.22, -1.44, 1.38, -1.8, -0.22),
+            (-1.72, 1.12, -1.87, 1.27, -2.6, 0.0, -0.51, 0.95, -0.73),
+        ),
+    ),
+    "right": (
+        (-0.05, 0.49),
+        0.25,
+        (
+            (1.14, 0.32, -1.12, -0.67, 0.95, 3.2, -0.05, -3.46, -1.86),
+            (1.81, 1.3, -0.58, -0.85, -2.76, -1.94, 1.45, -2.27, 0.02),
+            (-0.67, 0.78, -0.54, 0.74, -2.8, 0.01, -0.79, 1.3, -1.7),
+        ),
+    ),
+}
 """How it carries an object in the second arm where it does not hurry: the way that the head makes in 4 s [m], the
 period [s], and offset, sine and cosine of the free arm's activations of a stroke and of the three that lift the holding
 arm. Found by CMA-ES, 24 generations of 12 trials in each direction, on the way made while the object stays wrapped"""
@@ -98,11 +106,17 @@ class Gait(NamedTuple):
     """What is added to them per angle from the course to the way [1/rad], of up to 1 rad"""
 
 
-HOMEWARD = Gait(-2.25, 2.0, 0.272, (
-    (1.09, 1.26, -0.93, -0.99, 1.01, -0.04, 0.92, -1.55, -1.31),
-    (-1.43, 3.46, 0.43, -1.73, -2.12, -2.95, 1.02, -0.33, 0.49),
-    (-2.34, 0.84, -0.5, 0.1, -2.02, 1.34, 0.11, 0.34, 0.1),
-), (-0.35, 0.09, -0.55, -0.09, -0.03, -0.62, -0.21, -0.27, 0.24))  # fmt: skip
+HOMEWARD = Gait(
+    -2.25,
+    2.0,
+    0.272,
+    (
+        (1.09, 1.26, -0.93, -0.99, 1.01, -0.04, 0.92, -1.55, -1.31),
+        (-1.43, 3.46, 0.43, -1.73, -2.12, -2.95, 1.02, -0.33, 0.49),
+        (-2.34, 0.84, -0.5, 0.1, -2.02, 1.34, 0.11, 0.34, 0.1),
+    ),
+    (-0.35, 0.09, -0.55, -0.09, -0.03, -0.62, -0.21, -0.27, 0.24),
+)
 """How it hurries home, which is mostly where it came from: to the left and somewhat behind. It is more than twice as
 fast as the others. Found by `scripts/search_carrying.py`, by CMA-ES on how soon the object is home; the course was then
 set by hand to what the gait makes near home"""
@@ -138,10 +152,15 @@ def see(observations: NDArray[np.float32]) -> Sight:
     from_head = places - places[:, [HEAD_NODE]]
     speeds = np.linalg.norm(o[:, VELOCITIES].reshape(len(o), -1, 3), axis=2)
     return Sight(
-        ahead=base[:, 0], right=base[:, 2], gap=_gap(from_head, base), touched=np.sum(o[:, TOUCH] > 0.0, axis=1),
-        levels=o[:, LEVELS], tilt=np.arccos(np.clip(o[:, AXIS][:, 1], -1.0, 1.0)), speed=speeds.max(axis=1),
+        ahead=base[:, 0],
+        right=base[:, 2],
+        gap=_gap(from_head, base),
+        touched=np.sum(o[:, TOUCH] > 0.0, axis=1),
+        levels=o[:, LEVELS],
+        tilt=np.arccos(np.clip(o[:, AXIS][:, 1], -1.0, 1.0)),
+        speed=speeds.max(axis=1),
         goal=o[:, GOAL] * np.linalg.norm(o[:, HOME], axis=1, keepdims=True),
-    )  # fmt: skip
+    )
 
 
 def _gap(nodes: Array, base: Array) -> Array:

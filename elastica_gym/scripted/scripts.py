@@ -49,10 +49,13 @@ def reach_for_the_object(env: BatchEnv) -> Array:
 
 
 _scripts: dict[str, Script] = {
-    "SnakeForward": forward, "SnakeReach": reach, "SnakeSteer": steer, "OctopusCrawl": crawl_to_the_commanded_side,
+    "SnakeForward": forward,
+    "SnakeReach": reach,
+    "SnakeSteer": steer,
+    "OctopusCrawl": crawl_to_the_commanded_side,
     "OctopusReach": reach_for_the_object,
     **dict.fromkeys(("OctopusMove", "OctopusGrab", "OctopusReturn", "OctopusFetch"), fetch),
-}  # fmt: skip
+}
 """By the name of the task"""
 
 
@@ -79,6 +82,8 @@ def scripted_policy(task: Task) -> Script:
     """
     name = task.base if isinstance(task, GoalTask) else task.name
     if name not in _scripts:
-        raise ValueError(f"{name} has no script; elastica_gym.scripted.register_script gives it one. "
-                         f"Tasks that have one: {', '.join(_scripts)}")  # fmt: skip
+        raise ValueError(
+            f"{name} has no script; elastica_gym.scripted.register_script gives it one. "
+            f"Tasks that have one: {', '.join(_scripts)}"
+        )
     return _scripts[name]

@@ -10,6 +10,18 @@ from .rollout import Policy, Recorder, Rollout, run_rollout
 from .view import View
 
 __all__ = [
-    "Camera", "Figure", "Policy", "Recorder", "Rollout", "Stage", "View", "framing", "read_positions", "record_rollout",
-    "render_frames", "run_rollout", "write_recording", "write_video",
-]  # fmt: skip
+    "Camera",
+    "Figure",
+    "Policy",
+    "Recorder",
+    "Rollout",
+    "Stage",
+    "View",
+    "framing",
+    "read_positions",
+    "record_rollout",
+    "render_frames",
+    "run_rollout",
+    "write_recording",
+    "write_video",
+]

@@ -222,17 +222,18 @@ def figures(rollout: Rollout, moment: int) -> list[Figure]:
 def animal_of(rollout: Rollout, moment: int) -> Figure:
     """Return the figure of the animal at one moment of a rollout, with a ball about a head that is a rod's end."""
     return animal(
-        rollout.nodes[moment], rollout.radii[moment], rollout.elements_per_rod, head_node=rollout.head_node,
+        rollout.nodes[moment],
+        rollout.radii[moment],
+        rollout.elements_per_rod,
+        head_node=rollout.head_node,
         head=HEAD if rollout.head_is_an_end else None,
-    )  # fmt: skip
+    )
 
 
 def objects(rollout: Rollout, moment: int) -> Figure:
     """Return the figure of the objects at one moment of a rollout."""
     begin, end = rollout.objects()
-    return Figure(
-        begin=begin[moment], end=end[moment], radii=rollout.object_radius, rgba=(*OBJECT, 1.0), is_flat=True
-    )
+    return Figure(begin=begin[moment], end=end[moment], radii=rollout.object_radius, rgba=(*OBJECT, 1.0), is_flat=True)
 
 
 def home(rollout: Rollout, moment: int) -> list[Figure]:
@@ -244,8 +245,15 @@ def home(rollout: Rollout, moment: int) -> list[Figure]:
     return [Figure(begin=begin, end=begin + thick, radii=HOME_RADIUS, rgba=(*HOME, 1.0), is_flat=True)]
 
 
-def animal(nodes: Array, radii: Array, elements_per_rod: tuple[int, ...] | None = None, *,
-           head_node: int = -1, color: Color = BODY, head: Color | None = HEAD) -> Figure:  # fmt: skip
+def animal(
+    nodes: Array,
+    radii: Array,
+    elements_per_rod: tuple[int, ...] | None = None,
+    *,
+    head_node: int = -1,
+    color: Color = BODY,
+    head: Color | None = HEAD,
+) -> Figure:
     """Return the figure of an animal at one moment.
 
     Parameters
@@ -303,9 +311,16 @@ def ball(centre: Array, radius: float, color: Color = TARGET, alpha: float = 0.6
     return Figure(begin=points, end=points, radii=radius, rgba=(*color, alpha))
 
 
-def render_frames(rollout: Rollout, moments: Sequence[int] | None = None, *, has_trail: bool = True,
-                  camera: Camera | None = None, width: int = 960, height: int = 540,
-                  show: Callable[[float], object] | None = None) -> Image:  # fmt: skip
+def render_frames(
+    rollout: Rollout,
+    moments: Sequence[int] | None = None,
+    *,
+    has_trail: bool = True,
+    camera: Camera | None = None,
+    width: int = 960,
+    height: int = 540,
+    show: Callable[[float], object] | None = None,
+) -> Image:
     """Draw moments of a rollout: the animal on the ground, objects and target, a frame for each moment.
 
     Parameters

@@ -40,9 +40,16 @@ if TYPE_CHECKING:
 APPLICATION_ID = "elastica_gym"
 
 SCENE = (
-    "ground", "home", "target", "objects", "animal/body", "animal/nodes", "animal/head", "animal/trail",
+    "ground",
+    "home",
+    "target",
+    "objects",
+    "animal/body",
+    "animal/nodes",
+    "animal/head",
+    "animal/trail",
     "animal/direction",
-)  # fmt: skip
+)
 """Entities that the view of the scene shows"""
 
 GROUND = (226, 229, 225)
@@ -171,8 +178,9 @@ def write_whole(path: Path, data: bytes) -> Path:
     except OSError as error:
         with contextlib.suppress(OSError):
             part.unlink()
-        raise OSError(error.errno, f"cannot write the recording of {len(data)} bytes: {error.strerror}", str(path)) \
-            from error  # fmt: skip
+        raise OSError(
+            error.errno, f"cannot write the recording of {len(data)} bytes: {error.strerror}", str(path)
+        ) from error
     return path
 
 
@@ -202,21 +210,33 @@ def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     stream.log(
         "ground",
         rr.Boxes3D(
-            centers=[[centre[0], -depth, centre[2]]], half_sizes=[[half, 0.9 * depth, half]], colors=[GROUND],
+            centers=[[centre[0], -depth, centre[2]]],
+            half_sizes=[[half, 0.9 * depth, half]],
+            colors=[GROUND],
             fill_mode="solid",
         ),
         static=True,
-    )  # fmt: skip
+    )
     if rollout.home is not None:
         disc = rr.Cylinders3D(
-            centers=rollout.home[:1], quaternions=rotations_from_z(np.array([[0.0, 1.0, 0.0]])), radii=[HOME_RADIUS],
-            lengths=[0.004 * rollout.body_length], colors=[HOME], fill_mode="solid",
-        )  # fmt: skip
+            centers=rollout.home[:1],
+            quaternions=rotations_from_z(np.array([[0.0, 1.0, 0.0]])),
+            radii=[HOME_RADIUS],
+            lengths=[0.004 * rollout.body_length],
+            colors=[HOME],
+            fill_mode="solid",
+        )
         stream.log("home", disc, static=True)
     if rollout.target is not None:
-        send_columns(stream, rollout, "target", rr.Ellipsoids3D.columns(
-            centers=rollout.target, half_sizes=np.full_like(rollout.target, rollout.target_radius),
-        ))  # fmt: skip
+        send_columns(
+            stream,
+            rollout,
+            "target",
+            rr.Ellipsoids3D.columns(
+                centers=rollout.target,
+                half_sizes=np.full_like(rollout.target, rollout.target_radius),
+            ),
+        )
         stream.log("target", rr.Ellipsoids3D.from_fields(colors=[TARGET], fill_mode="solid"), static=True)
 
 
@@ -246,9 +266,15 @@ def _log_head(stream: "rr.RecordingStream", rollout: Rollout) -> None:
     if rollout.head_is_an_end:
         ball = 1.5 * thick
         above = ball + 0.1 * thick
-        send_columns(stream, rollout, "animal/head", rr.Ellipsoids3D.columns(
-            centers=rollout.head, half_sizes=np.full_like(rollout.head, ball),
-        ))  # fmt: skip
+        send_columns(
+            stream,
+            rollout,
+            "animal/head",
+            rr.Ellipsoids3D.columns(
+                centers=rollout.head,
+                half_sizes=np.full_like(rollout.head, ball),
+            ),
+        )
         stream.log("animal/head", rr.Ellipsoids3D.from_fields(colors=[HEAD], fill_mode="solid"), static=True)
 
     # a piece of the trail for each step; the blueprint shows all pieces up to now
@@ -362,14 +388,19 @@ def _blueprint(rollout: Rollout) -> Any:
         overrides={"/animal/trail": [rrb.VisibleTimeRanges([from_start, from_first])]},
         background=BACKGROUND,
         line_grid=rrb.LineGrid3D(
-            visible=True, spacing=0.5 * rollout.body_length, plane=rr.components.Plane3D((0.0, 1.0, 0.0)),
-            stroke_width=1.0, color=GRID,
+            visible=True,
+            spacing=0.5 * rollout.body_length,
+            plane=rr.components.Plane3D((0.0, 1.0, 0.0)),
+            stroke_width=1.0,
+            color=GRID,
         ),
         eye_controls=rrb.EyeControls3D(
-            kind="Orbital", look_target=centre, position=centre + width * np.array([0.0, 0.8, 0.7]),
+            kind="Orbital",
+            look_target=centre,
+            position=centre + width * np.array([0.0, 0.8, 0.7]),
             eye_up=(0.0, 1.0, 0.0),
         ),
-    )  # fmt: skip
+    )
     rewards = rrb.Horizontal(
         rrb.TimeSeriesView(name="Reward by term", origin="/reward"),
         rrb.TimeSeriesView(name="Return", origin="/return", plot_legend=rrb.PlotLegend(visible=False)),
@@ -377,14 +408,15 @@ def _blueprint(rollout: Rollout) -> Any:
     activations = rrb.Grid(
         *(
             rrb.TimeSeriesView(
-                name=f"Activations: {group.replace('/', ', ')}", origin=f"/activations/{group}",
+                name=f"Activations: {group.replace('/', ', ')}",
+                origin=f"/activations/{group}",
                 axis_y=rrb.ScalarAxis(range=(-1.05, 1.05)),
                 plot_legend=rrb.PlotLegend(visible=False),
             )
             for group in activation_groups(rollout)
         ),
         grid_columns=2,
-    )  # fmt: skip
+    )
     return rrb.Blueprint(
         rrb.Horizontal(scene, rrb.Vertical(rewards, activations, row_shares=[1, 3]), column_shares=[3, 2]),
         rrb.TimePanel(timeline="sim_time", play_state="playing", loop_mode="all", state="collapsed"),

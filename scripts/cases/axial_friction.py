@@ -33,9 +33,16 @@ class Simulator(BaseSystemCollection, Forcing):
 def resting() -> CosseratRod:
     """Return a rod that lies on the ground along ``AXIS``."""
     return CosseratRod.straight_rod(
-        20, RADIUS * UP, AXIS, UP, LENGTH, RADIUS, MASS / (np.pi * RADIUS**2 * LENGTH), youngs_modulus=1e6,
+        20,
+        RADIUS * UP,
+        AXIS,
+        UP,
+        LENGTH,
+        RADIUS,
+        MASS / (np.pi * RADIUS**2 * LENGTH),
+        youngs_modulus=1e6,
         shear_modulus=4e5,
-    )  # fmt: skip
+    )
 
 
 def energies(rod: CosseratRod, *loads: tuple, gravity: np.ndarray = -G * UP) -> tuple[float, float]:
@@ -46,9 +53,15 @@ def energies(rod: CosseratRod, *loads: tuple, gravity: np.ndarray = -G * UP) -> 
         simulator.add_forcing_to(rod).using(kind, *arguments)
     simulator.add_forcing_to(rod).using(GravityForces, gravity)
     simulator.add_forcing_to(rod).using(
-        AnisotropicFrictionalPlane, k=10.0, nu=1e-4, plane_origin=np.zeros(3), plane_normal=UP, slip_velocity_tol=1e-6,
-        static_mu_array=np.full(3, STATIC), kinetic_mu_array=np.full(3, KINETIC),
-    )  # fmt: skip
+        AnisotropicFrictionalPlane,
+        k=10.0,
+        nu=1e-4,
+        plane_origin=np.zeros(3),
+        plane_normal=UP,
+        slip_velocity_tol=1e-6,
+        static_mu_array=np.full(3, STATIC),
+        kinetic_mu_array=np.full(3, KINETIC),
+    )
     simulator.finalize()
     # between sticking and slipping, each rod gets some steps of the other
     steps = int(DURATION / (0.02 * stable_time_step(rod)))
@@ -71,8 +84,17 @@ def measure() -> Result:
     """Return the energy over the force: none up to the static threshold, and then that of the force less friction."""
     forces, fine = STATIC * MASS * G * np.array([0.2, 0.6, 0.99, 1.01, 1.5, 2.0]), np.linspace(0.0, 16.0, 1000)
     found = np.array([pushed(force) for force in forces])
-    return Result("Axial friction", "force [N]", "energy [J]", forces, found, fine, exact(fine),
-                  float(np.abs(found - exact(forces)).max() / exact(forces).max()), 1e-3)  # fmt: skip
+    return Result(
+        "Axial friction",
+        "force [N]",
+        "energy [J]",
+        forces,
+        found,
+        fine,
+        exact(fine),
+        float(np.abs(found - exact(forces)).max() / exact(forces).max()),
+        1e-3,
+    )
 
 
 if __name__ == "__main__":

@@ -39,11 +39,18 @@ def measure() -> Result:
     """Return the end's way over time; theory is where it must come to rest."""
     simulator = Simulator()
     rod = CosseratRod.straight_rod(
-        19, np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), LENGTH, RADIUS, 1000.0, nu=2.0,
+        19,
+        np.zeros(3),
+        np.array([1.0, 0.0, 0.0]),
+        np.array([0.0, 1.0, 0.0]),
+        LENGTH,
+        RADIUS,
+        1000.0,
+        nu=2.0,
         # such a torque per spin would be unstable at this step, if anything turned
         nu_for_torques=0.0,
         youngs_modulus=MODULUS,
-    )  # fmt: skip
+    )
     simulator.append(rod)
     simulator.constrain(rod).using(OneEndFixedBC, constrained_position_idx=(0,), constrained_director_idx=(0,))
     simulator.add_forcing_to(rod).using(EndpointForces, np.zeros(3), np.array([FORCE, 0.0, 0.0]), ramp_up_time=1e-2)
@@ -56,8 +63,17 @@ def measure() -> Result:
     area = np.pi * RADIUS**2
     exact = FORCE * LENGTH / (area * MODULUS - FORCE)
     way = np.array(tips) - LENGTH
-    return Result("Axial stretching", "time [s]", "way of the end [m]", np.array(times), way, np.array([0.0, 20.0]),
-                  np.full(2, exact), abs(way[-1] / exact - 1.0), 1e-3)  # fmt: skip
+    return Result(
+        "Axial stretching",
+        "time [s]",
+        "way of the end [m]",
+        np.array(times),
+        way,
+        np.array([0.0, 20.0]),
+        np.full(2, exact),
+        abs(way[-1] / exact - 1.0),
+        1e-3,
+    )
 
 
 if __name__ == "__main__":

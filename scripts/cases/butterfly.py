@@ -44,8 +44,10 @@ class EnergyCallBack(CallBackBaseClass):
         if self.is_reciprocal:
             shear = np.einsum("ik,ijk,jk->k", system.sigma, system.shear_matrix, system.sigma)
             bend = np.einsum("ik,ijk,jk->k", system.kappa, system.bend_matrix, system.kappa)
-            elastic = (0.5 * (shear * system.rest_lengths / system.dilatation).sum(),
-                       0.5 * (bend * system.rest_voronoi_lengths / system.voronoi_dilatation**3).sum())  # fmt: skip
+            elastic = (
+                0.5 * (shear * system.rest_lengths / system.dilatation).sum(),
+                0.5 * (bend * system.rest_voronoi_lengths / system.voronoi_dilatation**3).sum(),
+            )
         self.times.append(time)
         self.energies.append((system.compute_translational_energy(), system.compute_rotational_energy(), *elastic))
 
@@ -55,9 +57,17 @@ def fly(radius: float, part: float = 0.2, is_reciprocal: bool = False) -> tuple[
     half = np.arange(N + 1.0) - N // 2
     nodes = LENGTH / N / np.sqrt(2.0) * np.array([N // 2 - abs(half), 0.0 * half, half + N // 2])
     rod = CosseratRod.straight_rod(
-        N, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]), LENGTH, radius, DENSITY,
-        youngs_modulus=YOUNG, poisson_ratio=0.5, position=nodes,
-    )  # fmt: skip
+        N,
+        np.zeros(3),
+        np.array([0.0, 0.0, 1.0]),
+        np.array([0.0, 1.0, 0.0]),
+        LENGTH,
+        radius,
+        DENSITY,
+        youngs_modulus=YOUNG,
+        poisson_ratio=0.5,
+        position=nodes,
+    )
     simulator = Simulator()
     simulator.append(rod)
     if is_reciprocal:
@@ -81,8 +91,18 @@ def measure() -> Result:
     """Return energies of a slender rod over time; theory is that their sum stays."""
     times, energies = fly(SLENDER)
     sums = np.stack([energies[:, :2].sum(axis=1), energies[:, 2:].sum(axis=1), energies.sum(axis=1)], axis=1)
-    return Result("Butterfly", "time [s]", "energy [J]", times, sums, times[[0, -1]], sums[[0, 0], 2],
-                  drift(energies), 1e-3, labels=("kinetic", "elastic", "both"))  # fmt: skip
+    return Result(
+        "Butterfly",
+        "time [s]",
+        "energy [J]",
+        times,
+        sums,
+        times[[0, -1]],
+        sums[[0, 0], 2],
+        drift(energies),
+        1e-3,
+        labels=("kinetic", "elastic", "both"),
+    )
 
 
 if __name__ == "__main__":

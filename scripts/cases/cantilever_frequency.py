@@ -46,9 +46,16 @@ def measure() -> Result:
     n = 40
     simulator = Simulator()
     rod = CosseratRod.straight_rod(
-        n, np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), LENGTH, RADIUS, DENSITY,
-        youngs_modulus=YOUNG, shear_modulus=YOUNG / 3.0,
-    )  # fmt: skip
+        n,
+        np.zeros(3),
+        np.array([1.0, 0.0, 0.0]),
+        np.array([0.0, 1.0, 0.0]),
+        LENGTH,
+        RADIUS,
+        DENSITY,
+        youngs_modulus=YOUNG,
+        shear_modulus=YOUNG / 3.0,
+    )
     s = rod.position_collection[0] / LENGTH
     ratio = (np.cosh(MODE) + np.cos(MODE)) / (np.sinh(MODE) + np.sin(MODE))
     shape = np.cosh(MODE * s) - np.cos(MODE * s) - ratio * (np.sinh(MODE * s) - np.sin(MODE * s))
@@ -68,9 +75,17 @@ def measure() -> Result:
     crossings = t[rising] - y[rising] * (t[rising + 1] - t[rising]) / (y[rising + 1] - y[rising])
     found = (crossings.size - 1) / (crossings[-1] - crossings[0])
     fine = np.linspace(0.0, duration, 300)
-    return Result(f"First mode of a cantilever: {found:.4f} Hz, theory {expected:.4f} Hz", "time [s]",
-                  "way of the end [m]", t, y, fine, y.max() * np.sin(2.0 * np.pi * expected * fine),
-                  abs(found / expected - 1.0), 1e-2)  # fmt: skip
+    return Result(
+        f"First mode of a cantilever: {found:.4f} Hz, theory {expected:.4f} Hz",
+        "time [s]",
+        "way of the end [m]",
+        t,
+        y,
+        fine,
+        y.max() * np.sin(2.0 * np.pi * expected * fine),
+        abs(found / expected - 1.0),
+        1e-2,
+    )
 
 
 if __name__ == "__main__":

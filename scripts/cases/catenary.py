@@ -37,9 +37,17 @@ def hung(n: int, radius: float) -> np.ndarray:
     depth = np.sqrt(LENGTH**2 - SPAN**2)
     nodes = np.array([SPAN * along, depth * (np.abs(along) - 0.5), 0.0 * along])
     rod = CosseratRod.straight_rod(
-        n, nodes[:, 0], np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]), LENGTH, radius, DENSITY,
-        youngs_modulus=YOUNG, shear_modulus=YOUNG / 3.0, position=nodes,
-    )  # fmt: skip
+        n,
+        nodes[:, 0],
+        np.array([1.0, 0.0, 0.0]),
+        np.array([0.0, 0.0, 1.0]),
+        LENGTH,
+        radius,
+        DENSITY,
+        youngs_modulus=YOUNG,
+        shear_modulus=YOUNG / 3.0,
+        position=nodes,
+    )
     simulator = Simulator()
     simulator.append(rod)
     simulator.constrain(rod).using(FixedConstraint, constrained_position_idx=(0, -1))

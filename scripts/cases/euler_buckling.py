@@ -32,9 +32,16 @@ def swing(force: float) -> float:
     """Return the frequency of the first mode under a force along the axis [Hz]."""
     simulator = Simulator()
     rod = CosseratRod.straight_rod(
-        N, np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), LENGTH, RADIUS, DENSITY,
-        youngs_modulus=YOUNG, shear_modulus=YOUNG / 3.0,
-    )  # fmt: skip
+        N,
+        np.zeros(3),
+        np.array([1.0, 0.0, 0.0]),
+        np.array([0.0, 1.0, 0.0]),
+        LENGTH,
+        RADIUS,
+        DENSITY,
+        youngs_modulus=YOUNG,
+        shear_modulus=YOUNG / 3.0,
+    )
     s = rod.position_collection[0] / LENGTH
     rod.velocity_collection[1] = 1e-5 * (1.0 - np.cos(0.5 * np.pi * s))
     simulator.append(rod)
@@ -64,9 +71,17 @@ def measure() -> Result:
     squared = np.array([swing(force) for force in forces]) ** 2
     found = float(np.roots(np.polyfit(forces, squared, 2)).max())
     ends = np.array([0.0, THRESHOLD])
-    return Result(f"Buckling of a cantilever: {found:.4f} N, theory {THRESHOLD:.4f} N", "force [N]",
-                  "squared frequency [1/s^2]", forces, squared, ends, np.array([frequency(N) ** 2, 0.0]),
-                  abs(found / THRESHOLD - 1.0), 2e-2)  # fmt: skip
+    return Result(
+        f"Buckling of a cantilever: {found:.4f} N, theory {THRESHOLD:.4f} N",
+        "force [N]",
+        "squared frequency [1/s^2]",
+        forces,
+        squared,
+        ends,
+        np.array([frequency(N) ** 2, 0.0]),
+        abs(found / THRESHOLD - 1.0),
+        2e-2,
+    )
 
 
 if __name__ == "__main__":

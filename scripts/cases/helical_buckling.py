@@ -33,9 +33,16 @@ class Simulator(BaseSystemCollection, Constraints):
 def slopes(n: int) -> np.ndarray:
     """Return the angles between the elements of a rod at rest and its axis [rad], (n,)."""
     rod = CosseratRod.straight_rod(
-        n, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]), LENGTH, RADIUS,
-        1.0 / (np.pi * RADIUS**2), nu=0.02, youngs_modulus=1e6,
-    )  # fmt: skip
+        n,
+        np.zeros(3),
+        np.array([0.0, 0.0, 1.0]),
+        np.array([0.0, 1.0, 0.0]),
+        LENGTH,
+        RADIUS,
+        1.0 / (np.pi * RADIUS**2),
+        nu=0.02,
+        youngs_modulus=1e6,
+    )
     rod.shear_matrix = np.repeat(SHEAR * np.eye(3)[:, :, None], n, axis=2)
     rod.bend_matrix = np.repeat(np.diag([BENDING, BENDING, TWISTING])[:, :, None], n - 1, axis=2)
     # a push that makes it buckle in the middle, and not where rounding says
@@ -43,9 +50,13 @@ def slopes(n: int) -> np.ndarray:
     simulator = Simulator()
     simulator.append(rod)
     simulator.constrain(rod).using(
-        HelicalBucklingBC, constrained_position_idx=(0, -1), constrained_director_idx=(0, -1),
-        twisting_time=TWISTING_TIME, slack=SLACK, number_of_rotations=TURNS,
-    )  # fmt: skip
+        HelicalBucklingBC,
+        constrained_position_idx=(0, -1),
+        constrained_director_idx=(0, -1),
+        twisting_time=TWISTING_TIME,
+        slack=SLACK,
+        number_of_rotations=TURNS,
+    )
     simulator.finalize()
     integrate(PositionVerlet(), simulator, REST, int(REST / (0.9 * stable_time_step(rod))))
     return np.arccos(rod.tangents[2])
@@ -62,8 +73,10 @@ def load(n: int) -> tuple[float, float]:
 
     def misfit(unknown: np.ndarray) -> list[float]:
         moment, tension = unknown
-        return [4.0 * np.sqrt((1.0 - moment**2 / (4.0 * tension)) / tension) - slack,
-                moment / ratio + 4.0 * np.arccos(moment / (2.0 * np.sqrt(tension))) - angle]  # fmt: skip
+        return [
+            4.0 * np.sqrt((1.0 - moment**2 / (4.0 * tension)) / tension) - slack,
+            moment / ratio + 4.0 * np.arccos(moment / (2.0 * np.sqrt(tension))) - angle,
+        ]
 
     moment, tension = fsolve(misfit, [0.58 * angle, 0.1 * angle**2])
     return float(moment), float(tension)
@@ -92,8 +105,17 @@ def measure() -> Result:
     """Return slopes along the rod; theory is the envelope of a localised helix."""
     n = 200
     found, fine = slopes(n), np.linspace(0.0, LENGTH, 1000)
-    return Result("Helical buckling", "along the rod [m]", "angle to the axis [rad]", centres(n), found, fine,
-                  exact(n, fine), error(n, found), 4e-2)  # fmt: skip
+    return Result(
+        "Helical buckling",
+        "along the rod [m]",
+        "angle to the axis [rad]",
+        centres(n),
+        found,
+        fine,
+        exact(n, fine),
+        error(n, found),
+        4e-2,
+    )
 
 
 if __name__ == "__main__":

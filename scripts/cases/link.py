@@ -29,8 +29,17 @@ def measure() -> Result:
     writhe = compute_writhe(lines, 1000.0, "next_tangent")
     link = compute_link(lines, normals, np.full((heights.size, NODES - 1), 1e-3), 1000.0, "next_tangent")
     error = float(np.abs(twist + writhe - link).max())
-    return Result("Twist of a coil, and its link less its writhe", "height of a turn", "turns", heights, twist, heights,
-                  link - writhe, error, 2e-2)  # fmt: skip
+    return Result(
+        "Twist of a coil, and its link less its writhe",
+        "height of a turn",
+        "turns",
+        heights,
+        twist,
+        heights,
+        link - writhe,
+        error,
+        2e-2,
+    )
 
 
 if __name__ == "__main__":

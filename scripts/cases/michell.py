@@ -71,9 +71,16 @@ def squared_frequency(turns: float) -> float:
     rest_kappa = np.zeros((3, N))
     rest_kappa[2] = -turns / R
     ring = CosseratRod.ring_rod(
-        N, np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 2.0 * np.pi * R, RADIUS, DENSITY,
-        youngs_modulus=YOUNG, shear_modulus=SHEAR,
-    )  # fmt: skip
+        N,
+        np.zeros(3),
+        np.array([0.0, 1.0, 0.0]),
+        np.array([0.0, 0.0, 1.0]),
+        2.0 * np.pi * R,
+        RADIUS,
+        DENSITY,
+        youngs_modulus=YOUNG,
+        shear_modulus=SHEAR,
+    )
     nudge(ring, turns)
     simulator = Simulator()
     simulator.append(ring)
@@ -105,9 +112,17 @@ def measure() -> Result:
     turns, fine = THRESHOLD * np.array([0.0, 0.4, 0.7, 0.9, 1.1, 1.3]), np.linspace(0.0, 1.3 * THRESHOLD, 100)
     squared = np.array([squared_frequency(each) for each in turns])
     found = float(np.interp(0.0, -squared, turns))
-    return Result(f"Michell's instability: {found:.4f} turns, theory {THRESHOLD:.4f}", "twist [turns]",
-                  "squared frequency [1/s^2]", turns, squared, fine, np.array([exact(each) for each in fine]),
-                  abs(found / THRESHOLD - 1.0), 5e-3)  # fmt: skip
+    return Result(
+        f"Michell's instability: {found:.4f} turns, theory {THRESHOLD:.4f}",
+        "twist [turns]",
+        "squared frequency [1/s^2]",
+        turns,
+        squared,
+        fine,
+        np.array([exact(each) for each in fine]),
+        abs(found / THRESHOLD - 1.0),
+        5e-3,
+    )
 
 
 if __name__ == "__main__":

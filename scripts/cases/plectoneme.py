@@ -48,16 +48,29 @@ def wind() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return times [s], (m,), nodes [m], (m, 3, N + 1), normals, (m, 3, N), and radii [m], (m, N)."""
     nu = DAMPING * DENSITY * np.pi * RADIUS**2
     rod = CosseratRod.straight_rod(
-        N, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]), LENGTH, RADIUS, DENSITY, nu=nu,
-        nu_for_torques=0.25 * nu * RADIUS**2, youngs_modulus=YOUNG, shear_modulus=YOUNG / 3.0,
-    )  # fmt: skip
+        N,
+        np.zeros(3),
+        np.array([0.0, 0.0, 1.0]),
+        np.array([0.0, 1.0, 0.0]),
+        LENGTH,
+        RADIUS,
+        DENSITY,
+        nu=nu,
+        nu_for_torques=0.25 * nu * RADIUS**2,
+        youngs_modulus=YOUNG,
+        shear_modulus=YOUNG / 3.0,
+    )
     rod.velocity_collection[1] = 1e-2 * np.sin(np.pi * rod.position_collection[2] / LENGTH)
     simulator = Simulator()
     simulator.append(rod)
     simulator.constrain(rod).using(
-        HelicalBucklingBC, constrained_position_idx=(0, -1), constrained_director_idx=(0, -1),
-        twisting_time=TWISTING_TIME, slack=SLACK, number_of_rotations=TURNS,
-    )  # fmt: skip
+        HelicalBucklingBC,
+        constrained_position_idx=(0, -1),
+        constrained_director_idx=(0, -1),
+        twisting_time=TWISTING_TIME,
+        slack=SLACK,
+        number_of_rotations=TURNS,
+    )
     simulator.detect_contact_between(rod, rod).using(RodSelfContact, k=1e3, nu=0.0)
     steps = int(DURATION / (0.5 * stable_time_step(rod)))
     seen: list[tuple] = []
@@ -76,8 +89,18 @@ def measure() -> Result:
     writhe = compute_writhe(nodes, LENGTH, "next_tangent")
     link = compute_link(nodes, normals, radii, LENGTH, "next_tangent")
     error = max(np.abs(twist + writhe - imposed).max(), np.abs(link - imposed).max())
-    return Result("Plectoneme", "time [s]", "turns", times, np.stack([twist, writhe, link], axis=1), times, imposed,
-                  float(error), 1e-2, labels=("twist", "writhe", "link"))  # fmt: skip
+    return Result(
+        "Plectoneme",
+        "time [s]",
+        "turns",
+        times,
+        np.stack([twist, writhe, link], axis=1),
+        times,
+        imposed,
+        float(error),
+        1e-2,
+        labels=("twist", "writhe", "link"),
+    )
 
 
 if __name__ == "__main__":

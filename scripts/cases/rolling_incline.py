@@ -19,12 +19,22 @@ def exact(angle: np.ndarray) -> np.ndarray:
 def measure() -> Result:
     """Return energies over the angle: those of rolling, and then of slipping."""
     angles, fine = np.array([0.1, 0.4, 0.8, 0.99, 1.01, 1.2]) * THRESHOLD, np.linspace(0.0, 1.2 * THRESHOLD, 1000)
-    found = np.array([
-        energies(resting(), gravity=G * (np.sin(angle) * ACROSS - np.cos(angle) * UP)) for angle in angles
-    ])  # fmt: skip
+    found = np.array(
+        [energies(resting(), gravity=G * (np.sin(angle) * ACROSS - np.cos(angle) * UP)) for angle in angles]
+    )
     error = np.abs(found / exact(angles) - 1.0).max()
-    return Result("Rolling down an incline", "angle [rad]", "energy [J]", angles, found, fine, exact(fine),
-                  float(error), 1e-3, labels=("translation", "rotation"))  # fmt: skip
+    return Result(
+        "Rolling down an incline",
+        "angle [rad]",
+        "energy [J]",
+        angles,
+        found,
+        fine,
+        exact(fine),
+        float(error),
+        1e-3,
+        labels=("translation", "rotation"),
+    )
 
 
 if __name__ == "__main__":

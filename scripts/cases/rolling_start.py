@@ -31,8 +31,18 @@ def measure() -> Result:
     factors, fine = np.array([0.25, 0.5, 1.0, 1.5, 2.0]), np.linspace(0.25, 2.0, 100)
     found = np.array([thrown(factor) for factor in factors])
     error = np.abs(found / exact(factors) - 1.0).max()
-    return Result("From slipping to rolling", "moment of inertia over m r^2/2", "energy [J]", factors, found, fine,
-                  exact(fine), float(error), 1e-3, labels=("translation", "rotation"))  # fmt: skip
+    return Result(
+        "From slipping to rolling",
+        "moment of inertia over m r^2/2",
+        "energy [J]",
+        factors,
+        found,
+        fine,
+        exact(fine),
+        float(error),
+        1e-3,
+        labels=("translation", "rotation"),
+    )
 
 
 if __name__ == "__main__":

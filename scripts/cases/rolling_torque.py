@@ -24,8 +24,18 @@ def measure() -> Result:
     fine = np.linspace(0.0, 1.5 * THRESHOLD, 1000)
     found = np.array([energies(resting(), (UniformTorques, torque, AXIS)) for torque in torques])
     error = np.abs(found / exact(torques) - 1.0).max()
-    return Result("Rolling by a torque", "torque [N m]", "energy [J]", torques, found, fine, exact(fine), float(error),
-                  1e-3, labels=("translation", "rotation"))  # fmt: skip
+    return Result(
+        "Rolling by a torque",
+        "torque [N m]",
+        "energy [J]",
+        torques,
+        found,
+        fine,
+        exact(fine),
+        float(error),
+        1e-3,
+        labels=("translation", "rotation"),
+    )
 
 
 if __name__ == "__main__":

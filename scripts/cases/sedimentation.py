@@ -25,9 +25,16 @@ def speed(angle: float) -> float:
     simulator = Simulator()
     direction = np.array([np.cos(angle), np.sin(angle), 0.0])
     rod = CosseratRod.straight_rod(
-        20, np.zeros(3), direction, np.array([0.0, 0.0, 1.0]), LENGTH, RADIUS, 1000.0, youngs_modulus=1e7,
+        20,
+        np.zeros(3),
+        direction,
+        np.array([0.0, 0.0, 1.0]),
+        LENGTH,
+        RADIUS,
+        1000.0,
+        youngs_modulus=1e7,
         shear_modulus=4e6,
-    )  # fmt: skip
+    )
     simulator.append(rod)
     simulator.add_forcing_to(rod).using(UniformForces, FORCE, np.array([1.0, 0.0, 0.0]))
     simulator.add_forcing_to(rod).using(SlenderBodyTheory, VISCOSITY)
@@ -47,8 +54,17 @@ def measure() -> Result:
     angles, fine = np.linspace(0.0, 0.5 * np.pi, 4), np.linspace(0.0, 0.5 * np.pi, 100)
     found = np.array([speed(angle) for angle in angles])
     error = float(np.abs(found / exact(angles) - 1.0).max())
-    return Result("Sedimentation of a slender body", "angle to the force [rad]", "speed along the force [m/s]", angles,
-                  found, fine, exact(fine), error, 1e-3)  # fmt: skip
+    return Result(
+        "Sedimentation of a slender body",
+        "angle to the force [rad]",
+        "speed along the force [m/s]",
+        angles,
+        found,
+        fine,
+        exact(fine),
+        error,
+        1e-3,
+    )
 
 
 if __name__ == "__main__":

@@ -48,21 +48,43 @@ def crawl() -> tuple[np.ndarray, np.ndarray]:
     """Return times [s], (m,), and places of the centre of mass [m], (m, 3)."""
     up, young = np.array([0.0, 1.0, 0.0]), 1e6
     snake = CosseratRod.straight_rod(
-        50, np.zeros(3), np.array([0.0, 0.0, 1.0]), up, LENGTH, RADIUS, 1000.0, nu=1e-4, youngs_modulus=young,
+        50,
+        np.zeros(3),
+        np.array([0.0, 0.0, 1.0]),
+        up,
+        LENGTH,
+        RADIUS,
+        1000.0,
+        nu=1e-4,
+        youngs_modulus=young,
         shear_modulus=young / 1.5,
-    )  # fmt: skip
+    )
     simulator = Simulator()
     simulator.append(snake)
     simulator.add_forcing_to(snake).using(GravityForces, -G * up)
     simulator.add_forcing_to(snake).using(
-        MuscleTorques, base_length=LENGTH, b_coeff=WAVE, period=PERIOD, wave_number=2.0 * np.pi, phase_shift=0.0,
-        rest_lengths=snake.rest_lengths, ramp_up_time=PERIOD, direction=up, with_spline=True,
-    )  # fmt: skip
+        MuscleTorques,
+        base_length=LENGTH,
+        b_coeff=WAVE,
+        period=PERIOD,
+        wave_number=2.0 * np.pi,
+        phase_shift=0.0,
+        rest_lengths=snake.rest_lengths,
+        ramp_up_time=PERIOD,
+        direction=up,
+        with_spline=True,
+    )
     forward = LENGTH / (PERIOD**2 * G * FROUDE)
     simulator.add_forcing_to(snake).using(
-        AnisotropicFrictionalPlane, k=1.0, nu=1e-6, plane_origin=-RADIUS * up, plane_normal=up, slip_velocity_tol=1e-8,
-        static_mu_array=np.zeros(3), kinetic_mu_array=forward * np.array([1.0, 1.5, 2.0]),
-    )  # fmt: skip
+        AnisotropicFrictionalPlane,
+        k=1.0,
+        nu=1e-6,
+        plane_origin=-RADIUS * up,
+        plane_normal=up,
+        slip_velocity_tol=1e-8,
+        static_mu_array=np.zeros(3),
+        kinetic_mu_array=forward * np.array([1.0, 1.5, 2.0]),
+    )
     times: list[float] = []
     places: list[np.ndarray] = []
     simulator.collect_diagnostics(snake).using(WayCallBack, 12_500, times, places)
@@ -78,8 +100,18 @@ def measure() -> Result:
     way = np.linalg.norm(places[first:] - places[first], axis=1)
     ends = np.array([START, DURATION])
     error = float(abs(way[-1] / (ends[1] - ends[0]) / SPEED - 1.0))
-    return Result("The continuum snake", "time [s]", "way [m]", times[first:], way, ends,
-                  SPEED * (ends - START), error, 1e-2, reference="PyElastica 0.2.2")  # fmt: skip
+    return Result(
+        "The continuum snake",
+        "time [s]",
+        "way [m]",
+        times[first:],
+        way,
+        ends,
+        SPEED * (ends - START),
+        error,
+        1e-2,
+        reference="PyElastica 0.2.2",
+    )
 
 
 if __name__ == "__main__":

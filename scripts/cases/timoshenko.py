@@ -34,9 +34,16 @@ def deflection(n: int) -> float:
     """Return where the end of a rod of n elements comes to rest [m]."""
     simulator = Simulator()
     rod = CosseratRod.straight_rod(
-        n, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]), LENGTH, RADIUS, DENSITY,
-        youngs_modulus=YOUNG, shear_modulus=SHEAR,
-    )  # fmt: skip
+        n,
+        np.zeros(3),
+        np.array([0.0, 0.0, 1.0]),
+        np.array([0.0, 1.0, 0.0]),
+        LENGTH,
+        RADIUS,
+        DENSITY,
+        youngs_modulus=YOUNG,
+        shear_modulus=SHEAR,
+    )
     simulator.append(rod)
     simulator.constrain(rod).using(OneEndFixedBC, constrained_position_idx=(0,), constrained_director_idx=(0,))
     simulator.add_forcing_to(rod).using(EndpointForces, np.zeros(3), np.array([FORCE, 0.0, 0.0]))
@@ -64,8 +71,18 @@ def measure() -> Result:
     found = np.array([deflection(n) for n in SIZES])
     errors = np.abs(found / np.array([exact(n) for n in SIZES]) - 1.0)
     order = -np.polyfit(np.log(sizes), np.log(errors), 1)[0]
-    return Result(f"Timoshenko's beam: order {order:.2f}", "elements", "relative error", sizes, errors, sizes,
-                  errors[0] * (sizes[0] / sizes) ** 2.0, abs(order - 2.0), 0.1, scale="log")  # fmt: skip
+    return Result(
+        f"Timoshenko's beam: order {order:.2f}",
+        "elements",
+        "relative error",
+        sizes,
+        errors,
+        sizes,
+        errors[0] * (sizes[0] / sizes) ** 2.0,
+        abs(order - 2.0),
+        0.1,
+        scale="log",
+    )
 
 
 if __name__ == "__main__":

@@ -52,14 +52,18 @@ def test_unknown_hyperparameter():
         (("--set", "clip_range=[0.1]"), "clip_range must be a number above 0, or 'lin_<number>', got [0.1]"),
         (("--set", "policy_kwargs=3"), "policy_kwargs must be a mapping such as {key: value}, or none (null), got 3"),
         (("--set", "policy_kwargs={net_arc: [8]}"), "key of policy_kwargs 'net_arc'; did you mean 'net_arch'"),
-        (("--set", "policy_kwargs={net_arch: [-8]}"), "net_arch of policy_kwargs must be a list of sizes of layers, or "
-         "dict(pi=[...], vf=[...]), got [-8]"),
+        (
+            ("--set", "policy_kwargs={net_arch: [-8]}"),
+            "net_arch of policy_kwargs must be a list of sizes of layers, or dict(pi=[...], vf=[...]), got [-8]",
+        ),
         (("--set", "policy=MlpPolicy", "policy_kwargs=dict(log_std_init='x')"), "log_std_init of policy_kwargs must"),
         (("--set", "policy=os.path"), "policy must be a subclass of ActorCriticPolicy for ppo, got 'os.path'"),
         (("--set", "policy=nowhere.Policy"), "There is no policy 'nowhere.Policy'"),
         (("--algo", "sac", "--set", "train_freq=[2, episode]"), "train_freq must be in steps where n_envs is not 1"),
-        (("--algo", "sac", "--set", "ent_coef=automatic"), "ent_coef must be a number, 0 or more, or 'auto', or "
-         "'auto_<number>', got 'automatic'"),
+        (
+            ("--algo", "sac", "--set", "ent_coef=automatic"),
+            "ent_coef must be a number, 0 or more, or 'auto', or 'auto_<number>', got 'automatic'",
+        ),
         (("--set", "gamma"), "Expected KEY=VALUE, got 'gamma'"),
         (("--set", "gamma=["), "The value of gamma is not YAML: '['"),
         (("--set", "n_timesteps=abc"), "n_timesteps must be a number of environment steps from 1 to 1,000,000,000"),
@@ -174,10 +178,18 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 
 @pytest.mark.parametrize(
     "program",
-    ["agents/train.py", "agents/evaluate.py", "agents/search.py", "scripts/score.py", "scripts/make_table.py",
-     "scripts/count_divergence.py", "scripts/search_carrying.py", "scripts/draw_muscles.py",
-     "scripts/draw_activations.py"],
-)  # fmt: skip
+    [
+        "agents/train.py",
+        "agents/evaluate.py",
+        "agents/search.py",
+        "scripts/score.py",
+        "scripts/make_table.py",
+        "scripts/count_divergence.py",
+        "scripts/search_carrying.py",
+        "scripts/draw_muscles.py",
+        "scripts/draw_activations.py",
+    ],
+)
 def test_missing_packages(program):
     command = [sys.executable, "-c", WITHOUT, str(ROOT / program)]
     done = subprocess.run(command, env=environment(), cwd=ROOT, capture_output=True, text=True)

@@ -123,8 +123,9 @@ def test_a_film_of_any_policy(offscreen, tmp_path):
     output = run("agents.evaluate", *which, "--episodes", 1, "--video", path)
     assert f"filmed {path} (" in output and "drawing" in output and "\r" not in output
     assert path.read_bytes()[4:8] == b"ftyp"
-    short = film(policies.baseline("random"), FORWARD, tmp_path / "film.gif", seed=0, size=(64, 48), every=4,
-                 env_kwargs=SHORT)  # fmt: skip
+    short = film(
+        policies.baseline("random"), FORWARD, tmp_path / "film.gif", seed=0, size=(64, 48), every=4, env_kwargs=SHORT
+    )
     with Image.open(short) as picture:
         assert picture.size == (64, 48) and picture.n_frames == 6 and picture.info["duration"] == 200
 

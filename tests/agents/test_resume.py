@@ -21,9 +21,13 @@ def run_until(checkpoints: int, sign: int, folder: Path, *args: str | Path) -> t
     """Send a signal to agents.train when the run has that many new checkpoints; return its status and output."""
     seen = set(checkpoint_folders(folder / "checkpoints"))
     process = subprocess.Popen(
-        arguments("agents.train", *args), env=environment(), cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        arguments("agents.train", *args),
+        env=environment(),
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
         text=True,
-    )  # fmt: skip
+    )
     deadline = time.monotonic() + 400
     while len(seen) < checkpoints and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.002)

@@ -29,9 +29,12 @@ def starts(gait: gaits.Gait) -> np.ndarray:
 def standing(body, angles, *, elapsed=7):
     """A batch as gaits see it, with its goals at these angles, and its observations."""
     batch = SimpleNamespace(
-        body=body, num_envs=len(angles), elapsed=np.full(len(angles), elapsed), control_dt=0.05,
+        body=body,
+        num_envs=len(angles),
+        elapsed=np.full(len(angles), elapsed),
+        control_dt=0.05,
         observation_names=("goal/forward", "goal/right"),
-    )  # fmt: skip
+    )
     return batch, np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
@@ -88,8 +91,18 @@ def test_the_arms_strokes_are_mirror_images():
 
 def searched_for(folder, target, monkeypatch, *, evaluations=2000):
     """Search with an objective that is largest, 0, at a target in units of the parameters' spreads."""
-    config = {"env": FORWARD, "gait": None, "seed": 0, "evaluations": evaluations, "minutes": None, "restarts": 1,
-              "population": 20, "threads": 1, "evaluation_episodes": 1, "evaluation_seed": 0}  # fmt: skip
+    config = {
+        "env": FORWARD,
+        "gait": None,
+        "seed": 0,
+        "evaluations": evaluations,
+        "minutes": None,
+        "restarts": 1,
+        "population": 20,
+        "threads": 1,
+        "evaluation_episodes": 1,
+        "evaluation_seed": 0,
+    }
     spreads = np.array([parameter.spread for parameter in gaits.WAVE.parameters])
 
     def values(self, env, candidates, seeds):

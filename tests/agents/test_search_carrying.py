@@ -62,8 +62,20 @@ def test_the_first_arm_carries_in_the_mirror():
 
 def test_a_short_search(tmp_path):
     out = tmp_path / "found" / "gait.yml"
-    command = [sys.executable, "scripts/search_carrying.py", "--generations", "1", "--population", "4", "--trials", "1",
-               "--grabs", "4", "--out", str(out)]  # fmt: skip
+    command = [
+        sys.executable,
+        "scripts/search_carrying.py",
+        "--generations",
+        "1",
+        "--population",
+        "4",
+        "--trials",
+        "1",
+        "--grabs",
+        "4",
+        "--out",
+        str(out),
+    ]
     done = subprocess.run(command, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=400)
     assert done.returncode == 0 and f"wrote {out}" in done.stdout, done.stdout + done.stderr
     found = yaml.safe_load(out.read_text())

@@ -25,16 +25,37 @@ CRAWL, STEER = "elastica_gym/OctopusCrawl-v1", "elastica_gym/SnakeSteer-v1"
 @pytest.fixture(scope="module")
 def ppo_run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("runs") / "ppo"
-    output = run("agents.train", "--env", FORWARD, "--steps", 200, "--folder", folder, *SMALL_PPO, "gamma=0.9",
-                 "learning_rate=lin_0.001", "--recordings", 1)  # fmt: skip
+    output = run(
+        "agents.train",
+        "--env",
+        FORWARD,
+        "--steps",
+        200,
+        "--folder",
+        folder,
+        *SMALL_PPO,
+        "gamma=0.9",
+        "learning_rate=lin_0.001",
+        "--recordings",
+        1,
+    )
     assert f"python -m agents.evaluate --run {folder}" in output
     return folder
 
 
 def test_a_run_leaves_what_it_should(ppo_run):
     names = {path.name for path in ppo_run.iterdir()}
-    assert names == {"config.yml", "model.zip", "vecnormalize.pkl", "metrics.csv", "evaluations.csv",
-                     "learning_curve.png", "checkpoints", "recordings", "best"}  # fmt: skip
+    assert names == {
+        "config.yml",
+        "model.zip",
+        "vecnormalize.pkl",
+        "metrics.csv",
+        "evaluations.csv",
+        "learning_curve.png",
+        "checkpoints",
+        "recordings",
+        "best",
+    }
     config = yaml.safe_load((ppo_run / "config.yml").read_text())
     assert config["env"] == FORWARD and config["algo"] == "ppo" and config["seed"] == 0 and config["steps"] == 200
     assert config["hyperparameters"]["gamma"] == 0.9 and config["hyperparameters"]["n_envs"] == 2
@@ -91,21 +112,54 @@ def test_curves_of_several_runs(ppo_run, tmp_path):
 
 def test_a_run_starts_from_the_networks_of_another(ppo_run, tmp_path):
     # a step of no length: what is saved is what it began with
-    run("agents.train", "--env", FORWARD, "--steps", 40, "--start-from", ppo_run, "--folder", tmp_path / "next",
-        *SMALL_PPO, "learning_rate=0.0")  # fmt: skip
+    run(
+        "agents.train",
+        "--env",
+        FORWARD,
+        "--steps",
+        40,
+        "--start-from",
+        ppo_run,
+        "--folder",
+        tmp_path / "next",
+        *SMALL_PPO,
+        "learning_rate=0.0",
+    )
     begun, theirs = (load_run(folder)[0] for folder in (tmp_path / "next", ppo_run))
     weights = begun.model.policy.state_dict()
     for name, value in theirs.model.policy.state_dict().items():
         assert torch.equal(value, weights[name]) == (name != "log_std"), name
     assert begun.normalization.obs_rms.count > theirs.normalization.obs_rms.count
-    output = run("agents.train", "--env", CRAWL, "--steps", 40, "--start-from", ppo_run, "--folder",
-                 tmp_path / "misfit", *SMALL_PPO, status=2)  # fmt: skip
+    output = run(
+        "agents.train",
+        "--env",
+        CRAWL,
+        "--steps",
+        40,
+        "--start-from",
+        ppo_run,
+        "--folder",
+        tmp_path / "misfit",
+        *SMALL_PPO,
+        status=2,
+    )
     assert "do not fit" in output and FORWARD in output and "not seen here: " in output
 
 
 def test_a_run_starts_from_a_pretrained_policy(tmp_path):
-    run("agents.train", "--env", REACH, "--steps", 40, "--start-from", "snake_reach_ppo", "--folder", tmp_path / "next",
-        *SMALL_PPO, "learning_rate=0.0")  # fmt: skip
+    run(
+        "agents.train",
+        "--env",
+        REACH,
+        "--steps",
+        40,
+        "--start-from",
+        "snake_reach_ppo",
+        "--folder",
+        tmp_path / "next",
+        *SMALL_PPO,
+        "learning_rate=0.0",
+    )
     begun, theirs = load_run(tmp_path / "next")[0], load_pretrained("snake_reach_ppo")[0]
     weights = begun.model.policy.state_dict()
     for name, value in theirs.model.policy.state_dict().items():
@@ -115,14 +169,34 @@ def test_a_run_starts_from_a_pretrained_policy(tmp_path):
     np.testing.assert_allclose(begun.normalization.obs_rms.mean, theirs.normalization.mean, atol=1e-3)
     config = yaml.safe_load((tmp_path / "next" / "config.yml").read_text())
     assert config["start_from"] == "snake_reach_ppo" and "--start-from snake_reach_ppo" in command_of(config)
-    output = run("agents.train", "--env", REACH, "--start-from", "snake_rech_ppo", "--folder", tmp_path / "none",
-                 *SMALL_PPO, status=2)  # fmt: skip
+    output = run(
+        "agents.train",
+        "--env",
+        REACH,
+        "--start-from",
+        "snake_rech_ppo",
+        "--folder",
+        tmp_path / "none",
+        *SMALL_PPO,
+        status=2,
+    )
     assert "snake_rech_ppo is neither" in output and "snake_reach_ppo" in output
 
 
 def test_what_a_run_sees_more_than_the_one_it_starts_from_counts_for_nothing_at_first(ppo_run, tmp_path):
-    run("agents.train", "--env", STEER, "--steps", 40, "--start-from", ppo_run, "--folder", tmp_path / "next",
-        *SMALL_PPO, "learning_rate=0.0")  # fmt: skip
+    run(
+        "agents.train",
+        "--env",
+        STEER,
+        "--steps",
+        40,
+        "--start-from",
+        ppo_run,
+        "--folder",
+        tmp_path / "next",
+        *SMALL_PPO,
+        "learning_rate=0.0",
+    )
     begun, theirs = (load_run(folder)[0] for folder in (tmp_path / "next", ppo_run))
     before, now = observation_names(FORWARD), observation_names(STEER)
     new = [i for i, name in enumerate(now) if name not in before]
@@ -159,8 +233,24 @@ def test_a_minute_is_a_budget(tmp_path, monkeypatch):
 
 def test_sac_is_resumed_with_its_replay_buffer(tmp_path):
     folder = tmp_path / "run"
-    run("agents.train", "--algo", "sac", "--env", REACH, "--steps", 300, "--folder", folder, *SMALL, "--set",
-        "learning_starts=100", "gradient_steps=1", "batch_size=16", "buffer_size=600", SMALL_EPISODES)  # fmt: skip
+    run(
+        "agents.train",
+        "--algo",
+        "sac",
+        "--env",
+        REACH,
+        "--steps",
+        300,
+        "--folder",
+        folder,
+        *SMALL,
+        "--set",
+        "learning_starts=100",
+        "gradient_steps=1",
+        "batch_size=16",
+        "buffer_size=600",
+        SMALL_EPISODES,
+    )
     assert _filled(folder) == 256
     before = load_run(folder)[0].model
     assert isinstance(before, SAC)
@@ -172,8 +262,24 @@ def test_sac_is_resumed_with_its_replay_buffer(tmp_path):
 
 def test_metrics_of_sac_have_its_losses_though_it_begins_without(tmp_path):
     folder = tmp_path / "run"
-    run("agents.train", "--algo", "sac", "--steps", 1024, "--folder", folder, *SMALL, "--evaluations", 0, "--set",
-        "learning_starts=600", "gradient_steps=1", "batch_size=16", "buffer_size=600", SMALL_EPISODES)  # fmt: skip
+    run(
+        "agents.train",
+        "--algo",
+        "sac",
+        "--steps",
+        1024,
+        "--folder",
+        folder,
+        *SMALL,
+        "--evaluations",
+        0,
+        "--set",
+        "learning_starts=600",
+        "gradient_steps=1",
+        "batch_size=16",
+        "buffer_size=600",
+        SMALL_EPISODES,
+    )
     metrics = read_table(folder / METRICS)
     for name in ("actor_loss", "critic_loss", "ent_coef", "n_updates", "learning_rate"):
         assert np.isfinite(metrics[name]).tolist() == [False, True], name

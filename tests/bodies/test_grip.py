@@ -104,8 +104,11 @@ def test_more_than_a_full_turn(body):
     first = first_of(body)
     reach, turn = RADIUS + 0.01, np.radians(9.0)
     angle = turn * np.arange(51)
-    state.x[0, :, first : first + 51] = [PLACE[0] + reach * np.cos(angle), PLACE[1] + 0.0005 * np.arange(51),
-                                         PLACE[2] - reach * np.sin(angle)]  # fmt: skip
+    state.x[0, :, first : first + 51] = [
+        PLACE[0] + reach * np.cos(angle),
+        PLACE[1] + 0.0005 * np.arange(51),
+        PLACE[2] - reach * np.sin(angle),
+    ]
     assert np.degrees(grip(body, state).spans[0, 0]) == pytest.approx(49 * 9.0, abs=1e-6)
 
 
@@ -149,8 +152,11 @@ def test_an_arm_that_turns_back(body):
 def test_a_straight_arm_beside_the_object_wraps_little(body):
     state = apart(body)
     first = first_of(body)
-    state.x[0, :, first : first + 51] = [PLACE[0] + STEP * (np.arange(51) - 25), np.full(51, PLACE[1]),
-                                         np.full(51, PLACE[2] + RADIUS + 0.025)]  # fmt: skip
+    state.x[0, :, first : first + 51] = [
+        PLACE[0] + STEP * (np.arange(51) - 25),
+        np.full(51, PLACE[1]),
+        np.full(51, PLACE[2] + RADIUS + 0.025),
+    ]
     body.model.contact_radius[first : first + 50] = 0.025
     found = grip(body, state)
     assert 1 < found.counts[0, 0] < 8

@@ -54,15 +54,17 @@ def test_activations_for_recover_what_muscles_can_do():
     wanted = np.random.default_rng(0).uniform(-0.9, 0.9, (3, 42))
     wanted[:, 14:] = 0.0
     couples = np.einsum("ma,ak->mk", wanted, MATRIX[:, 0])
-    np.testing.assert_allclose(np.einsum("ma,ak->mk", activations_for(couples, MATRIX), MATRIX[:, 0]), couples,
-                               atol=1e-6)  # fmt: skip
+    np.testing.assert_allclose(
+        np.einsum("ma,ak->mk", activations_for(couples, MATRIX), MATRIX[:, 0]), couples, atol=1e-6
+    )
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_muscles_neither_push_nor_spin_a_free_snake(seed):
     body = snake()
-    free = body.model._replace(gravity=np.zeros(3), is_viscous=False, planes=body.model.planes._replace(
-        origin=np.array([[0.0, -10.0, 0.0]])))  # fmt: skip
+    free = body.model._replace(
+        gravity=np.zeros(3), is_viscous=False, planes=body.model.planes._replace(origin=np.array([[0.0, -10.0, 0.0]]))
+    )
     state, control = at_rest(free, body.rods)
     control.couple[0] = np.einsum("a,acl->cl", np.random.default_rng(seed).uniform(-1, 1, 42), body.couples)
     advance(free, state, control, 0, 1, 2e-5, 2000)

@@ -191,7 +191,7 @@ def overlaps(body, state):
         pytest.param(-all_of(0, 0) - all_of(0, 1), {"first", "second"}, id="other arm"),
         pytest.param(sides(-1.0, -1.0), {"first", "second"}, id="other arm, swung from the base"),
     ],
-)  # fmt: skip
+)
 def test_an_arm_at_full_strength_stops_at(body, scene, activations, struck):
     state, control = scene
     state.body_x[0, 0, [0, 2]] = 3.0

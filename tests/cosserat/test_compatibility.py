@@ -96,8 +96,12 @@ def test_accelerations_by_hand(name):
         sim.extend(systems.values())
         sim.finalize()
         system, rng = systems[name], np.random.default_rng(0)
-        for attribute, size in (("velocity_collection", 0.1), ("omega_collection", 3.0), ("external_forces", 0.01),
-                                ("external_torques", 1e-4)):  # fmt: skip
+        for attribute, size in (
+            ("velocity_collection", 0.1),
+            ("omega_collection", 3.0),
+            ("external_forces", 0.01),
+            ("external_torques", 1e-4),
+        ):
             getattr(system, attribute)[:] = size * rng.standard_normal(getattr(system, attribute).shape)
         if name == "rod":
             system.position_collection[:] += 1e-3 * rng.standard_normal((3, 9))
@@ -138,9 +142,14 @@ def test_exported_files(n_steps, interval, method, tmp_path):
                 _made.append(self)
 
         sim.collect_diagnostics(rod).using(
-            Export, step_skip=10, filename="rod", directory=str(folder), method=method, initial_file_count=2,
+            Export,
+            step_skip=10,
+            filename="rod",
+            directory=str(folder),
+            method=method,
+            initial_file_count=2,
             file_save_interval=interval,
-        )  # fmt: skip
+        )
         sim.finalize()
         (callback,) = callbacks
         assert callback.save_path == str(folder / "rod_{:02d}.{}")
@@ -214,9 +223,14 @@ def test_rods_ignore_unknown_keywords_as_theirs_but_say_so():
 FEATURES = {
     "damper": ("dampen", "AnalyticalLinearDamper", dict(uniform_damping_constant=1.0), "time_stap", "time_step"),
     "filter": ("dampen", "LaplaceDissipationFilter", dict(filter_order=2), "filter_odrer", "filter_order"),
-    "constraint": ("constrain", "OneEndFixedBC", dict(constrained_position_idx=(0,), constrained_director_idx=(0,)),
-                   "constrained_position_index", "constrained_position_idx"),
-}  # fmt: skip
+    "constraint": (
+        "constrain",
+        "OneEndFixedBC",
+        dict(constrained_position_idx=(0,), constrained_director_idx=(0,)),
+        "constrained_position_index",
+        "constrained_position_idx",
+    ),
+}
 
 
 @pytest.mark.parametrize(("method", "cls", "given", "wrong", "right"), FEATURES.values(), ids=FEATURES.keys())
@@ -251,7 +265,7 @@ def test_features_that_refuse_unknown_keywords_in_theirs_refuse_them_here(name):
         "FreeJoint": ("connect", dict(k=1.0, nu=0.0)),
         "HingeJoint": ("connect", dict(k=1.0, nu=0.0, kt=1.0, normal_direction=X)),
         "MyCallBack": ("collect_diagnostics", dict(step_skip=1, callback_params={})),
-    }[name]  # fmt: skip
+    }[name]
     for lib in (theirs, ours):
         sim, rods = simulator(lib), (make_rod(lib), make_rod(lib))
         sim.extend(rods)

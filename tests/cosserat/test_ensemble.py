@@ -38,8 +38,9 @@ def two_cpus(monkeypatch):
 
 
 def make_rod(n, place):
-    return ea.CosseratRod.straight_rod(n, np.array([place, 0.0, 0.0]), Z, Y, 0.3, 0.01, 1000.0, nu=0.1,
-                                       youngs_modulus=1e5, shear_modulus=4e4)  # fmt: skip
+    return ea.CosseratRod.straight_rod(
+        n, np.array([place, 0.0, 0.0]), Z, Y, 0.3, 0.01, 1000.0, nu=0.1, youngs_modulus=1e5, shear_modulus=4e4
+    )
 
 
 def scene(*sizes, every=2500):
@@ -61,8 +62,11 @@ def integrate(sim, n_steps, start=0.0):
 
 
 def moved(sim):
-    return [array.copy() for rod in sim for array in (rod.position_collection, rod.director_collection,
-                                                      rod.velocity_collection, rod.omega_collection)]  # fmt: skip
+    return [
+        array.copy()
+        for rod in sim
+        for array in (rod.position_collection, rod.director_collection, rod.velocity_collection, rod.omega_collection)
+    ]
 
 
 def test_ensemble_equals_one_simulation_bit_for_bit(monkeypatch):

@@ -116,18 +116,30 @@ def by_either(built_in, own):
 
 CLAMP = dict(constrained_position_idx=(0,), constrained_director_idx=(0,))
 PAIRS = {
-    "load": (lambda s, a, b: s.add_forcing_to(a).using(ea.EndpointForces, np.zeros(3), 0.01 * X, ramp_up_time=1e-3),
-             lambda s, a, b: s.add_forcing_to(a).using(OwnEndpointForces, 0.01 * X)),
-    "constraint": (lambda s, a, b: s.constrain(a).using(ea.OneEndFixedBC, **CLAMP),
-                   lambda s, a, b: s.constrain(a).using(OwnConstraint, **CLAMP)),
-    "damper": (lambda s, a, b: s.dampen(a).using(ea.AnalyticalLinearDamper, uniform_damping_constant=4.0),
-               lambda s, a, b: s.dampen(a).using(OwnDamper)),
-    "joint": (lambda s, a, b: s.connect(a, b, -1, 0).using(ea.FreeJoint, k=10.0, nu=0.1),
-              lambda s, a, b: s.connect(a, b, -1, 0).using(OwnJoint, k=10.0, nu=0.1)),
-    "contact": (lambda s, a, b: (s.add_forcing_to(a).using(ea.EndpointForces, 0.01 * X, np.zeros(3)),
-                                 s.add_forcing_to(b).using(ea.EndpointForces, -0.01 * X, np.zeros(3))),
-                lambda s, a, b: s.detect_contact_between(a, b).using(OwnContact)),
-}  # fmt: skip
+    "load": (
+        lambda s, a, b: s.add_forcing_to(a).using(ea.EndpointForces, np.zeros(3), 0.01 * X, ramp_up_time=1e-3),
+        lambda s, a, b: s.add_forcing_to(a).using(OwnEndpointForces, 0.01 * X),
+    ),
+    "constraint": (
+        lambda s, a, b: s.constrain(a).using(ea.OneEndFixedBC, **CLAMP),
+        lambda s, a, b: s.constrain(a).using(OwnConstraint, **CLAMP),
+    ),
+    "damper": (
+        lambda s, a, b: s.dampen(a).using(ea.AnalyticalLinearDamper, uniform_damping_constant=4.0),
+        lambda s, a, b: s.dampen(a).using(OwnDamper),
+    ),
+    "joint": (
+        lambda s, a, b: s.connect(a, b, -1, 0).using(ea.FreeJoint, k=10.0, nu=0.1),
+        lambda s, a, b: s.connect(a, b, -1, 0).using(OwnJoint, k=10.0, nu=0.1),
+    ),
+    "contact": (
+        lambda s, a, b: (
+            s.add_forcing_to(a).using(ea.EndpointForces, 0.01 * X, np.zeros(3)),
+            s.add_forcing_to(b).using(ea.EndpointForces, -0.01 * X, np.zeros(3)),
+        ),
+        lambda s, a, b: s.detect_contact_between(a, b).using(OwnContact),
+    ),
+}
 
 
 @pytest.mark.parametrize(("built_in", "own"), PAIRS.values(), ids=PAIRS.keys())
@@ -147,11 +159,15 @@ PYTHON = {
     ea.ReciprocalTension: ("add_forcing_to", (), {}, ("apply_forces", "apply_torques")),
     ea.SlenderBodyTheory: ("add_forcing_to", (0.3,), {}, ("apply_forces", "apply_torques")),
     ea.FixedConstraint: ("constrain", (), CLAMP, ("constrain_values", "constrain_rates")),
-    ea.GeneralConstraint: ("constrain", (), dict(**CLAMP, rotational_constraint_selector=np.array([True, False, True])),
-                           ("constrain_values", "constrain_rates")),
+    ea.GeneralConstraint: (
+        "constrain",
+        (),
+        dict(**CLAMP, rotational_constraint_selector=np.array([True, False, True])),
+        ("constrain_values", "constrain_rates"),
+    ),
     ea.LaplaceDissipationFilter: ("dampen", (3,), {}, ("dampen_rates",)),
     ea.AnalyticalLinearDamper: ("dampen", (), dict(damping_constant=0.1, time_step=DT), ("dampen_rates",)),
-}  # fmt: skip
+}
 
 
 def through_super(cls, name):
@@ -163,8 +179,10 @@ def through_super(cls, name):
 def test_subclass_that_calls_super(cls):
     declare, args, kwargs, methods = PYTHON[cls]
     own = type("Own", (cls,), {name: through_super(cls, name) for name in methods})
-    expected, found = by_either(lambda s, a, b: getattr(s, declare)(a).using(cls, *args, **kwargs),
-                                lambda s, a, b: getattr(s, declare)(a).using(own, *args, **kwargs))  # fmt: skip
+    expected, found = by_either(
+        lambda s, a, b: getattr(s, declare)(a).using(cls, *args, **kwargs),
+        lambda s, a, b: getattr(s, declare)(a).using(own, *args, **kwargs),
+    )
     assert np.abs(expected - found).max() < 1e-13
 
 
@@ -179,9 +197,7 @@ def thick_ring():
 
 
 def thick_rod():
-    rod = ea.CosseratRod.straight_rod(
-        12, np.zeros(3), Z, Y, 0.3, 0.03, 1000.0, youngs_modulus=1e5, shear_modulus=4e4
-    )
+    rod = ea.CosseratRod.straight_rod(12, np.zeros(3), Z, Y, 0.3, 0.03, 1000.0, youngs_modulus=1e5, shear_modulus=4e4)
     rod.rest_kappa[0] = 3.0
     return rod
 
@@ -444,13 +460,15 @@ def test_the_same_bits_wherever_a_run_is_cut_or_restarted(stepper, tmp_path):
 
 def test_the_same_bits_of_a_body_that_rubs_on_a_plane(tmp_path):
     """What friction was when the state was saved is a part of it: the search for what it is now starts there."""
+
     def rubbing():
         body, sim = ea.Cylinder(np.array([0.0, 0.02, 0.0]), X, Y, 0.1, 0.02, 500.0), Simulator()
         for system in (body, ea.Plane(np.zeros(3), Y)):
             sim.append(system)
         sim.add_forcing_to(body).using(ea.GravityForces, np.array([1.0, -9.8, 0.3]))
-        sim.detect_contact_between(body, sim[1]).using(ea.CylinderPlaneContact, k=1e4, nu=10.0,
-                                                       friction_coefficient=0.5)  # fmt: skip
+        sim.detect_contact_between(body, sim[1]).using(
+            ea.CylinderPlaneContact, k=1e4, nu=10.0, friction_coefficient=0.5
+        )
         sim.finalize()
         return sim, body
 
@@ -582,9 +600,15 @@ def test_pickle():
     assert np.array_equal(again.position_collection, rods[0].position_collection)
 
 
-@pytest.mark.parametrize(("options", "ratio"), [
-    (dict(), 3.0), (dict(nu=0.1), 1.5), (dict(poisson_ratio=0.25), 1.25), (dict(nu=0.1, shear_modulus=2.5e4), 4.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("options", "ratio"),
+    [
+        (dict(), 3.0),
+        (dict(nu=0.1), 1.5),
+        (dict(poisson_ratio=0.25), 1.25),
+        (dict(nu=0.1, shear_modulus=2.5e4), 4.0),
+    ],
+)
 def test_shear_modulus(options, ratio):
     rod = make_rod(**{"shear_modulus": None, **options})
     assert rod.bend_matrix[0, 0, 0] / rod.bend_matrix[2, 2, 0] == pytest.approx(0.5 * ratio)
@@ -666,9 +690,17 @@ def test_muscles_without_ramp_are_at_full_strength_from_the_start():
         rod = make_rod()
         sim = simulator(rod)
         sim.add_forcing_to(rod).using(
-            ea.MuscleTorques, base_length=0.3, b_coeff=np.full(6, 1e-3), period=1.0, wave_number=6.0, phase_shift=0.0,
-            direction=Y, rest_lengths=rod.rest_lengths, ramp_up_time=ramp, with_spline=True,
-        )  # fmt: skip
+            ea.MuscleTorques,
+            base_length=0.3,
+            b_coeff=np.full(6, 1e-3),
+            period=1.0,
+            wave_number=6.0,
+            phase_shift=0.0,
+            direction=Y,
+            rest_lengths=rod.rest_lengths,
+            ramp_up_time=ramp,
+            with_spline=True,
+        )
         sim.finalize()
         integrate(sim, 1)
         return rod.omega_collection.copy()
@@ -682,8 +714,9 @@ def test_dampers_act_on_rigid_bodies():
     bodies = [ea.Cylinder(np.zeros(3), Z, Y, 0.1, 0.02, 500.0), ea.Sphere(np.zeros(3), 0.05, 500.0)]
     sim = simulator(*bodies)
     sim.dampen(bodies[0]).using(ea.AnalyticalLinearDamper, uniform_damping_constant=5.0)
-    sim.dampen(bodies[1]).using(ea.AnalyticalLinearDamper, translational_damping_constant=0.3,
-                                rotational_damping_constant=1e-4)  # fmt: skip
+    sim.dampen(bodies[1]).using(
+        ea.AnalyticalLinearDamper, translational_damping_constant=0.3, rotational_damping_constant=1e-4
+    )
     sim.finalize()
     for body in bodies:
         body.velocity_collection[:] = body.omega_collection[:] = 1.0 * Z[:, None]
@@ -707,8 +740,10 @@ def test_filter_of_a_ring_has_no_seam(order):
     assert np.abs(ring.velocity_collection[0] - 1.0).max() < 1e-9
 
 
-@pytest.mark.parametrize(("cls", "args"), [(ea.LaplaceDissipationFilter, (3,)), (ea.RayleighDissipation, (1.0,)),
-                                           (ea.SlenderBodyTheory, (1.0,))])  # fmt: skip
+@pytest.mark.parametrize(
+    ("cls", "args"),
+    [(ea.LaplaceDissipationFilter, (3,)), (ea.RayleighDissipation, (1.0,)), (ea.SlenderBodyTheory, (1.0,))],
+)
 def test_what_acts_along_rods_refuses_bodies(cls, args):
     body = ea.Sphere(np.zeros(3), 0.05, 500.0)
     sim = simulator(body)
@@ -735,28 +770,56 @@ def test_deprecated_names_warn(name):
         sim.finalize()
 
 
-ROD = dict(n_elements=6, start=np.zeros(3), direction=Z, normal=Y, base_length=0.3, base_radius=0.01, density=1000.0,
-           youngs_modulus=1e5)  # fmt: skip
+ROD = dict(
+    n_elements=6,
+    start=np.zeros(3),
+    direction=Z,
+    normal=Y,
+    base_length=0.3,
+    base_radius=0.01,
+    density=1000.0,
+    youngs_modulus=1e5,
+)
 
 
-@pytest.mark.parametrize(("name", "value", "error"), [
-    ("n_elements", 6.0, TypeError), ("n_elements", "6", TypeError), ("n_elements", True, TypeError),
-    ("n_elements", 1, ValueError), ("base_length", "long", TypeError), ("base_length", None, TypeError),
-    ("base_radius", "thin", TypeError), ("density", [1000.0, "x"], TypeError), ("youngs_modulus", "1e5", TypeError),
-    ("start", "origin", TypeError), ("start", [0.0, 1.0], ValueError), ("normal", None, ValueError),
-    ("shear_modulus", [1.0, 2.0], TypeError), ("position", "line", TypeError), ("nu", "none", TypeError),
-    ("rest_kappa", "flat", TypeError), ("poisson_ratio", "half", TypeError),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "value", "error"),
+    [
+        ("n_elements", 6.0, TypeError),
+        ("n_elements", "6", TypeError),
+        ("n_elements", True, TypeError),
+        ("n_elements", 1, ValueError),
+        ("base_length", "long", TypeError),
+        ("base_length", None, TypeError),
+        ("base_radius", "thin", TypeError),
+        ("density", [1000.0, "x"], TypeError),
+        ("youngs_modulus", "1e5", TypeError),
+        ("start", "origin", TypeError),
+        ("start", [0.0, 1.0], ValueError),
+        ("normal", None, ValueError),
+        ("shear_modulus", [1.0, 2.0], TypeError),
+        ("position", "line", TypeError),
+        ("nu", "none", TypeError),
+        ("rest_kappa", "flat", TypeError),
+        ("poisson_ratio", "half", TypeError),
+    ],
+)
 def test_errors_of_rods_name_the_argument(name, value, error):
     refuses(lambda: ea.CosseratRod.straight_rod(**{**ROD, name: value}), name, error=error)
 
 
-@pytest.mark.parametrize(("kwargs", "words"), [
-    ({}, ("constrained_position_idx []", "constrained_director_idx []")),
-    (dict(constrained_position_idx=(0,)), ("constrained_director_idx []",)),
-    (dict(constrained_position_idx=(0.5,), constrained_director_idx=(0,)), ("constrained_position_idx", "0.5")),
-    (dict(constrained_position_idx=(0,), constrained_director_idx=("first",)), ("constrained_director_idx", "first")),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("kwargs", "words"),
+    [
+        ({}, ("constrained_position_idx []", "constrained_director_idx []")),
+        (dict(constrained_position_idx=(0,)), ("constrained_director_idx []",)),
+        (dict(constrained_position_idx=(0.5,), constrained_director_idx=(0,)), ("constrained_position_idx", "0.5")),
+        (
+            dict(constrained_position_idx=(0,), constrained_director_idx=("first",)),
+            ("constrained_director_idx", "first"),
+        ),
+    ],
+)
 def test_errors_of_constraints_name_the_indices(kwargs, words):
     rod = make_rod()
     sim = simulator(rod)
@@ -772,16 +835,24 @@ def test_errors_of_joints_name_the_indices():
     refuses(sim.finalize, "first_connect_idx", "second_connect_idx", "2 and 1", error=ValueError)
 
 
-@pytest.mark.parametrize(("make", "name"), [
-    (lambda x: ea.FreeJoint(x, 0.0), "k"), (lambda x: ea.FixedJoint(1.0, 0.0, 1.0, x), "nut"),
-    (lambda x: ea.HingeJoint(1.0, 0.0, x, X), "kt"), (lambda x: ea.RodRodContact(1.0, x), "nu"),
-    (lambda x: ea.RodCylinderContact(1.0, 0.0, x), "velocity_damping_coefficient"),
-    (lambda x: ea.CylinderPlaneContact(1.0, 0.0, x), "friction_coefficient"),
-    (lambda x: ea.RodPlaneContact(x, 0.0), "k"), (lambda x: ea.UniformForces(x, Y), "force"),
-    (lambda x: ea.InteractionPlane(1.0, x, np.zeros(3), Y), "nu"), (lambda x: ea.Plane(x, Y), "plane_origin"),
-    (lambda x: ea.EndpointForces(x, X), "start_force"), (lambda x: ea.GravityForces(x), "acc_gravity"),
-    (lambda x: ea.EndpointForces(X, X, x), "ramp_up_time"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("make", "name"),
+    [
+        (lambda x: ea.FreeJoint(x, 0.0), "k"),
+        (lambda x: ea.FixedJoint(1.0, 0.0, 1.0, x), "nut"),
+        (lambda x: ea.HingeJoint(1.0, 0.0, x, X), "kt"),
+        (lambda x: ea.RodRodContact(1.0, x), "nu"),
+        (lambda x: ea.RodCylinderContact(1.0, 0.0, x), "velocity_damping_coefficient"),
+        (lambda x: ea.CylinderPlaneContact(1.0, 0.0, x), "friction_coefficient"),
+        (lambda x: ea.RodPlaneContact(x, 0.0), "k"),
+        (lambda x: ea.UniformForces(x, Y), "force"),
+        (lambda x: ea.InteractionPlane(1.0, x, np.zeros(3), Y), "nu"),
+        (lambda x: ea.Plane(x, Y), "plane_origin"),
+        (lambda x: ea.EndpointForces(x, X), "start_force"),
+        (lambda x: ea.GravityForces(x), "acc_gravity"),
+        (lambda x: ea.EndpointForces(X, X, x), "ramp_up_time"),
+    ],
+)
 def test_errors_of_features_name_the_argument(make, name):
     refuses(lambda: make("much"), name, "much", error=TypeError)
     refuses(lambda: make(np.nan), name, "nan", error=ValueError)

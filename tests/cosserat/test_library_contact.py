@@ -16,9 +16,16 @@ class Simulator(ea.BaseSystemCollection, ea.Forcing, ea.Connections, ea.Contact)
 
 def make_rod(start, direction=Z, normal=Y, n=10):
     return ea.CosseratRod.straight_rod(
-        n, np.array(start), np.array(direction), np.array(normal), 0.2, 0.01, 1000.0, youngs_modulus=1e6,
+        n,
+        np.array(start),
+        np.array(direction),
+        np.array(normal),
+        0.2,
+        0.01,
+        1000.0,
+        youngs_modulus=1e6,
         shear_modulus=4e5,
-    )  # fmt: skip
+    )
 
 
 def make_cylinder():
@@ -48,10 +55,13 @@ def momenta(*systems):
 CONTACTS = {
     "rod on rod": (lambda: make_rod((-0.1, 0.018, 0.1), X, Z), ea.RodRodContact, {}),
     "rod on cylinder": (make_cylinder, ea.RodCylinderContact, {}),
-    "rod on cylinder, rubbing": (make_cylinder, ea.RodCylinderContact,
-                                 dict(velocity_damping_coefficient=10.0, friction_coefficient=0.5)),
+    "rod on cylinder, rubbing": (
+        make_cylinder,
+        ea.RodCylinderContact,
+        dict(velocity_damping_coefficient=10.0, friction_coefficient=0.5),
+    ),
     "rod on sphere": (lambda: ea.Sphere(np.array([0.0, 0.038, 0.1]), 0.03, 500.0), ea.RodSphereContact, {}),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("is_joint", [False, True], ids=["contact", "as in 0.2.x"])
@@ -89,8 +99,13 @@ def heap(laws):
     rng, rods, sim = np.random.default_rng(0), [], Simulator()
     for _ in range(12):
         direction = rng.standard_normal(3)
-        rods.append(make_rod(0.05 * rng.standard_normal(3) - 0.1 * direction / np.linalg.norm(direction), direction,
-                             np.cross(direction, X + Y)))  # fmt: skip
+        rods.append(
+            make_rod(
+                0.05 * rng.standard_normal(3) - 0.1 * direction / np.linalg.norm(direction),
+                direction,
+                np.cross(direction, X + Y),
+            )
+        )
         sim.append(rods[-1])
     for i, one in enumerate(rods):
         for two in rods[i + 1 :]:
@@ -135,6 +150,7 @@ def test_two_laws_of_a_pair_add_up():
 @pytest.mark.parametrize("stray", [0.0, 2e-3], ids=["listed at each step", "kept"])
 def test_the_same_bits_however_pairs_are_found(stray):
     """With and without room for a list, and however long it is kept."""
+
     def laws(i):
         return [dict(k=1e3 + i, nu=0.5)]
 
@@ -203,16 +219,19 @@ def test_cylinder_rests_on_a_plane():
 
 
 RING_CONTACTS = {
-    "plane": lambda: (ea.RodPlaneContact, ea.Plane(np.zeros(3), Y)), "rod": lambda: (ea.RodRodContact, make_rod(X)),
+    "plane": lambda: (ea.RodPlaneContact, ea.Plane(np.zeros(3), Y)),
+    "rod": lambda: (ea.RodRodContact, make_rod(X)),
     "rigid body": lambda: (ea.RodCylinderContact, make_cylinder()),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("what", RING_CONTACTS)
 def test_a_ring_in_contact_is_refused(what):
-    ring, (cls, other), sim = ea.CosseratRod.ring_rod(
-        8, np.zeros(3), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e5
-    ), RING_CONTACTS[what](), Simulator()
+    ring, (cls, other), sim = (
+        ea.CosseratRod.ring_rod(8, np.zeros(3), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e5),
+        RING_CONTACTS[what](),
+        Simulator(),
+    )
     sim.append(ring)
     sim.append(other)
     sim.detect_contact_between(ring, other).using(cls, k=1.0, nu=0.0)

@@ -139,8 +139,9 @@ def test_dampers_stay_what_they_were_when_something_else_changes():
     force = np.zeros(3)
     rod = make_rod()
     sim = simulator(rod)
-    sim.dampen(rod).using(ea.AnalyticalLinearDamper, translational_damping_constant=0.1,
-                          rotational_damping_constant=0.0)  # fmt: skip
+    sim.dampen(rod).using(
+        ea.AnalyticalLinearDamper, translational_damping_constant=0.1, rotational_damping_constant=0.0
+    )
     sim.add_forcing_to(rod).using(ea.EndpointForces, force, np.zeros(3))
     sim.finalize()
     rates = sim.simulation.scene.decay.node_rate.copy()
@@ -184,8 +185,10 @@ def test_a_finalized_simulator_is_not_copied():
 
 def crossing():
     thick = dict(length=0.5, radius=0.025)
-    return [make_rod(start=(-0.25, 0.0, 0.0), direction=X, **thick),
-            make_rod(10, start=(-0.1, 0.047, -0.25), direction=Z, normal=X, **thick)]  # fmt: skip
+    return [
+        make_rod(start=(-0.25, 0.0, 0.0), direction=X, **thick),
+        make_rod(10, start=(-0.1, 0.047, -0.25), direction=Z, normal=X, **thick),
+    ]
 
 
 def folded():
@@ -200,8 +203,9 @@ def folded():
     tangents /= np.linalg.norm(tangents, axis=0)
     n = tangents.shape[1]
     up = np.repeat(Y[:, None], n, axis=1)
-    return [make_rod(n, radius=0.025, position=nodes,
-                     directors=np.stack([up, np.cross(tangents, up, axis=0), tangents]))]  # fmt: skip
+    return [
+        make_rod(n, radius=0.025, position=nodes, directors=np.stack([up, np.cross(tangents, up, axis=0), tangents]))
+    ]
 
 
 def on_plane():
@@ -237,45 +241,74 @@ PRESS, RUB = dict(k=500.0, nu=0.5), dict(friction_coefficient=0.4, velocity_damp
 FRICTION = dict(slip_velocity_tol=0.02, static_mu_array=2.0 * MU, kinetic_mu_array=MU)
 FLOOR = dict(plane_origin=np.zeros(3), plane_normal=Y)
 SPRING = dict(k=50.0, nu=0.01)
-BESIDE = dict(k=50.0, nu=0.01, k_repulsive=1e4, offset_btw_rods=np.full(8, 5e-4),
-              rod_one_direction_vec_in_material_frame=np.repeat(X[:, None], 8, axis=1),
-              rod_two_direction_vec_in_material_frame=-np.repeat(X[:, None], 8, axis=1))  # fmt: skip
+BESIDE = dict(
+    k=50.0,
+    nu=0.01,
+    k_repulsive=1e4,
+    offset_btw_rods=np.full(8, 5e-4),
+    rod_one_direction_vec_in_material_frame=np.repeat(X[:, None], 8, axis=1),
+    rod_two_direction_vec_in_material_frame=-np.repeat(X[:, None], 8, axis=1),
+)
 PAIRS = np.arange(1, 9), np.arange(1, 9)
-MUSCLES = dict(base_length=0.3, b_coeff=np.array([1e-3, 2e-3, 1e-3, 3e-3]), period=0.02, wave_number=4.0,
-               phase_shift=0.3, direction=np.array([0.0, 0.6, 0.8]), rest_lengths=np.full(12, 0.025), ramp_up_time=1e-4,
-               with_spline=True)  # fmt: skip
+MUSCLES = dict(
+    base_length=0.3,
+    b_coeff=np.array([1e-3, 2e-3, 1e-3, 3e-3]),
+    period=0.02,
+    wave_number=4.0,
+    phase_shift=0.3,
+    direction=np.array([0.0, 0.6, 0.8]),
+    rest_lengths=np.full(12, 0.025),
+    ramp_up_time=1e-4,
+    with_spline=True,
+)
 
 CONTACTS = {
-    ea.RodRodContact: (crossing, PRESS), ea.RodSelfContact: (folded, PRESS),
-    ea.RodCylinderContact: (on_cylinder, {**PRESS, **RUB}), ea.RodSphereContact: (on_sphere, {**PRESS, **RUB}),
+    ea.RodRodContact: (crossing, PRESS),
+    ea.RodSelfContact: (folded, PRESS),
+    ea.RodCylinderContact: (on_cylinder, {**PRESS, **RUB}),
+    ea.RodSphereContact: (on_sphere, {**PRESS, **RUB}),
     ea.CylinderPlaneContact: (leaning, {**PRESS, "friction_coefficient": 0.3}),
     ea.RodPlaneContact: (on_plane, dict(k=10.0, nu=1e-3)),
     ea.RodPlaneContactWithAnisotropicFriction: (on_plane, dict(k=10.0, nu=1e-3, **FRICTION)),
-}  # fmt: skip
+}
 LOADS = {
-    ea.GravityForces: (np.array([0.1, -9.8, 2.0]),), ea.EndpointForces: (0.01 * X, 0.02 * Y, 1e-4),
-    ea.EndpointForcesSinusoidal: (0.01, 0.02, 1e-4), ea.UniformForces: (0.05, Y), ea.UniformTorques: (1e-3, X),
-    ea.ReciprocalTension: (), ea.SlenderBodyTheory: (0.3,), ea.MuscleTorques: MUSCLES,
+    ea.GravityForces: (np.array([0.1, -9.8, 2.0]),),
+    ea.EndpointForces: (0.01 * X, 0.02 * Y, 1e-4),
+    ea.EndpointForcesSinusoidal: (0.01, 0.02, 1e-4),
+    ea.UniformForces: (0.05, Y),
+    ea.UniformTorques: (1e-3, X),
+    ea.ReciprocalTension: (),
+    ea.SlenderBodyTheory: (0.3,),
+    ea.MuscleTorques: MUSCLES,
     ea.InteractionPlane: dict(k=10.0, nu=1e-3, **FLOOR),
     ea.AnisotropicFrictionalPlane: dict(k=10.0, nu=1e-3, **FLOOR, **FRICTION),
-}  # fmt: skip
+}
 JOINTS = {
     ea.FreeJoint: (in_line, (-1, 0), SPRING),
     ea.HingeJoint: (in_line, (-1, 0), dict(**SPRING, kt=0.02, normal_direction=np.array([1.0, 0.5, 0.0]))),
     ea.FixedJoint: (in_line, (-1, 0), dict(**SPRING, kt=0.01, nut=1e-5)),
-    ea.ExternalContact: (crossing, (None, None), PRESS), ea.SelfContact: (folded, (None, None), PRESS),
+    ea.ExternalContact: (crossing, (None, None), PRESS),
+    ea.SelfContact: (folded, (None, None), PRESS),
     side.SurfaceJointSideBySide: (beside, PAIRS, BESIDE),
-}  # fmt: skip
+}
 CONSTRAINTS = {
-    ea.OneEndFixedBC: CLAMP, ea.FixedConstraint: dict(constrained_position_idx=(0, 5), constrained_director_idx=(2,)),
+    ea.OneEndFixedBC: CLAMP,
+    ea.FixedConstraint: dict(constrained_position_idx=(0, 5), constrained_director_idx=(2,)),
     ea.GeneralConstraint: dict(**CLAMP, translational_constraint_selector=np.array([True, False, True])),
-    ea.HelicalBucklingBC: dict(constrained_position_idx=(0, -1), constrained_director_idx=(0, -1), slack=0.001,
-                               twisting_time=20 * DT, number_of_rotations=0.05), ea.FreeBC: {},
-}  # fmt: skip
+    ea.HelicalBucklingBC: dict(
+        constrained_position_idx=(0, -1),
+        constrained_director_idx=(0, -1),
+        slack=0.001,
+        twisting_time=20 * DT,
+        number_of_rotations=0.05,
+    ),
+    ea.FreeBC: {},
+}
 DAMPERS = {
     ea.AnalyticalLinearDamper: dict(damping_constant=0.1, time_step=DT),
-    ea.LaplaceDissipationFilter: dict(filter_order=3), ea.RayleighDissipation: dict(damping_constant=0.5),
-}  # fmt: skip
+    ea.LaplaceDissipationFilter: dict(filter_order=3),
+    ea.RayleighDissipation: dict(damping_constant=0.5),
+}
 
 
 def declare(sim, cls, systems, built):
@@ -295,13 +328,20 @@ def declare(sim, cls, systems, built):
         sim.add_forcing_to(systems[0]).using(built, *args, **kwargs)
 
 
-METHODS = {"apply_contact": CONTACTS, "apply_forces": {**LOADS, **JOINTS}, "apply_torques": {**LOADS, **JOINTS},
-           "constrain_values": CONSTRAINTS, "constrain_rates": CONSTRAINTS, "dampen_rates": DAMPERS}  # fmt: skip
+METHODS = {
+    "apply_contact": CONTACTS,
+    "apply_forces": {**LOADS, **JOINTS},
+    "apply_torques": {**LOADS, **JOINTS},
+    "constrain_values": CONSTRAINTS,
+    "constrain_rates": CONSTRAINTS,
+    "dampen_rates": DAMPERS,
+}
 ALL = [*CONTACTS, *LOADS, *JOINTS, *CONSTRAINTS, *DAMPERS]
 
 
 def calling_super(cls):
     """Return a subclass whose methods do nothing but call those of the built-in class."""
+
     def through(name):
         return lambda self, *arguments: getattr(cls, name)(self, *arguments)
 
@@ -324,8 +364,12 @@ def test_a_feature_acts_by_hand_as_in_the_compiled_step(cls):
             shake(system, seed)
         sim.constrain_rates(0.0)
         integrate(sim, 40)
-        found.append(np.concatenate([system.velocity_collection.ravel() for system in movers]
-                                    + [system.omega_collection.ravel() for system in movers]))  # fmt: skip
+        found.append(
+            np.concatenate(
+                [system.velocity_collection.ravel() for system in movers]
+                + [system.omega_collection.ravel() for system in movers]
+            )
+        )
     compiled, by_hand, without = found
     assert np.isfinite(compiled).all()
     # RayleighDissipation by hand loads the next step, that is too late, as PyElastica's: its loads are cleared
@@ -355,6 +399,7 @@ def fall(scale, tolerance=None, attribute=None):
 
     Lengths go with the scale L, stiffnesses per area and density stay, so times go with L.
     """
+
     class Ground(ea.RodPlaneContact):
         def __init__(self, **law):
             super().__init__(**law)
@@ -362,8 +407,9 @@ def fall(scale, tolerance=None, attribute=None):
                 self.surface_tol = attribute * scale
 
     n, r = 6, 0.1 * scale
-    rod = ea.CosseratRod.straight_rod(n, np.array([0.0, 1.05, 0.0]) * r, Z, Y, scale, r, 1000.0, youngs_modulus=1e6,
-                                      shear_modulus=4e5)  # fmt: skip
+    rod = ea.CosseratRod.straight_rod(
+        n, np.array([0.0, 1.05, 0.0]) * r, Z, Y, scale, r, 1000.0, youngs_modulus=1e6, shear_modulus=4e5
+    )
     rod.position_collection[1] += 0.1 * r * np.linspace(0.0, 1.0, n + 1) ** 2
     sim = simulator(rod, ea.Plane(np.zeros(3), Y))
     # the mass goes with L^3, the weight with L^2, as a spring's force does

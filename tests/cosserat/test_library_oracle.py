@@ -22,9 +22,17 @@ QUARTER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 def make_rod(lib, n=N, start=(0.0, 0.0, 0.0), direction=Z, normal=Y, length=0.3, radius=0.01, **options):
     return lib.CosseratRod.straight_rod(
-        n, np.array(start), np.array(direction), np.array(normal), length, radius, 1000.0, youngs_modulus=1e5,
-        shear_modulus=4e4, **options,
-    )  # fmt: skip
+        n,
+        np.array(start),
+        np.array(direction),
+        np.array(normal),
+        length,
+        radius,
+        1000.0,
+        youngs_modulus=1e5,
+        shear_modulus=4e4,
+        **options,
+    )
 
 
 def shake(rod, seed=0):
@@ -75,10 +83,12 @@ def general(lib, sim):
     rod = make_rod(lib)
     sim.append(rod)
     sim.constrain(rod).using(
-        lib.GeneralConstraint, constrained_position_idx=(0, -1), constrained_director_idx=(0, 3),
+        lib.GeneralConstraint,
+        constrained_position_idx=(0, -1),
+        constrained_director_idx=(0, 3),
         translational_constraint_selector=np.array([True, False, True]),
         rotational_constraint_selector=np.array([True, True, False]),
-    )  # fmt: skip
+    )
     return [rod]
 
 
@@ -86,9 +96,13 @@ def helical(lib, sim):
     rod = make_rod(lib)
     sim.append(rod)
     sim.constrain(rod).using(
-        lib.HelicalBucklingBC, constrained_position_idx=(0, -1), constrained_director_idx=(0, -1),
-        twisting_time=600 * DT, slack=0.001, number_of_rotations=0.05,
-    )  # fmt: skip
+        lib.HelicalBucklingBC,
+        constrained_position_idx=(0, -1),
+        constrained_director_idx=(0, -1),
+        twisting_time=600 * DT,
+        slack=0.001,
+        number_of_rotations=0.05,
+    )
     return [rod]
 
 
@@ -117,10 +131,17 @@ def muscles(with_spline):
         rod = make_rod(lib)
         sim.append(rod)
         sim.add_forcing_to(rod).using(
-            lib.MuscleTorques, base_length=0.3, b_coeff=np.array([1e-3, 2e-3, 1e-3, 3e-3]), period=0.02,
-            wave_number=4.0, phase_shift=0.3, direction=np.array([0.0, 0.6, 0.8]), rest_lengths=rod.rest_lengths,
-            ramp_up_time=0.005, with_spline=with_spline,
-        )  # fmt: skip
+            lib.MuscleTorques,
+            base_length=0.3,
+            b_coeff=np.array([1e-3, 2e-3, 1e-3, 3e-3]),
+            period=0.02,
+            wave_number=4.0,
+            phase_shift=0.3,
+            direction=np.array([0.0, 0.6, 0.8]),
+            rest_lengths=rod.rest_lengths,
+            ramp_up_time=0.005,
+            with_spline=with_spline,
+        )
         return [rod]
 
     return scene
@@ -158,10 +179,14 @@ def side_by_side(lib, sim):
     one, two, offset = joints.get_connection_vector_straight_straight_rod(*rods, (1, 9), (1, 9))
     for j in range(8):
         sim.connect(rods[0], rods[1], first_connect_idx=np.array([1 + j]), second_connect_idx=np.array([1 + j])).using(
-            Mended if lib is theirs else joints.SurfaceJointSideBySide, k=np.array([50.0]), nu=np.array([0.01]),
-            k_repulsive=np.array([1e4]), rod_one_direction_vec_in_material_frame=one[:, j : j + 1].copy(),
-            rod_two_direction_vec_in_material_frame=two[:, j : j + 1].copy(), offset_btw_rods=offset[j : j + 1],
-        )  # fmt: skip
+            Mended if lib is theirs else joints.SurfaceJointSideBySide,
+            k=np.array([50.0]),
+            nu=np.array([0.01]),
+            k_repulsive=np.array([1e4]),
+            rod_one_direction_vec_in_material_frame=one[:, j : j + 1].copy(),
+            rod_two_direction_vec_in_material_frame=two[:, j : j + 1].copy(),
+            offset_btw_rods=offset[j : j + 1],
+        )
     return rods
 
 
@@ -172,9 +197,11 @@ def off_axis(cls, **kwargs):
         for rod in rods:
             sim.append(rod)
         sim.connect(rods[0], rods[1], first_connect_idx=-1, second_connect_idx=0).using(
-            getattr(importlib.import_module(path), cls), point_system_one=np.array([0.01, 0.0, 0.002]),
-            point_system_two=np.array([-0.01, 0.001, 0.0]), **kwargs,
-        )  # fmt: skip
+            getattr(importlib.import_module(path), cls),
+            point_system_one=np.array([0.01, 0.0, 0.002]),
+            point_system_two=np.array([-0.01, 0.001, 0.0]),
+            **kwargs,
+        )
         return rods
 
     return scene
@@ -214,26 +241,35 @@ def tapered(lib, sim):
 
 
 SCENES = {
-    "free": free, "one end fixed": one_end_fixed, "fixed": fixed, "general": general, "helical": helical,
+    "free": free,
+    "one end fixed": one_end_fixed,
+    "fixed": fixed,
+    "general": general,
+    "helical": helical,
     "gravity": loaded("GravityForces", np.array([0.1, -9.8, 2.0])),
     "endpoint": loaded("EndpointForces", 0.01 * X, np.array([0.0, 0.02, -0.01]), ramp_up_time=0.006),
     "sinusoidal": loaded("EndpointForcesSinusoidal", 0.01, 0.02, 0.005, Z, Y),
-    "uniform force": loaded("UniformForces", 0.05, Y), "uniform torque": loaded("UniformTorques", 1e-3, X),
-    "muscles": muscles(True), "muscles without spline": muscles(False),
+    "uniform force": loaded("UniformForces", 0.05, Y),
+    "uniform torque": loaded("UniformTorques", 1e-3, X),
+    "muscles": muscles(True),
+    "muscles without spline": muscles(False),
     "slender body": loaded("SlenderBodyTheory", 0.3),
     "free joint": joined("FreeJoint", k=50.0, nu=0.01),
     "hinge": joined("HingeJoint", k=50.0, nu=0.01, kt=0.02, normal_direction=np.array([1.0, 0.5, 0.0])),
     "fixed joint": joined("FixedJoint", k=50.0, nu=0.01, kt=0.01, nut=1e-5),
     "fixed joint at rest turned": joined("FixedJoint", k=50.0, nu=0.0, kt=0.01, rest_rotation_matrix=QUARTER),
-    "side by side": side_by_side, "off axis, free": off_axis("GenericSystemTypeFreeJoint", k=50.0, nu=0.01),
+    "side by side": side_by_side,
+    "off axis, free": off_axis("GenericSystemTypeFreeJoint", k=50.0, nu=0.01),
     "off axis, fixed": off_axis("GenericSystemTypeFixedJoint", k=50.0, nu=0.01, kt=0.01, nut=1e-5),
     "uniform damper": damped("AnalyticalLinearDamper", uniform_damping_constant=5.0, time_step=DT),
-    "physical damper": damped("AnalyticalLinearDamper", translational_damping_constant=0.02,
-                              rotational_damping_constant=1e-6, time_step=DT),
+    "physical damper": damped(
+        "AnalyticalLinearDamper", translational_damping_constant=0.02, rotational_damping_constant=1e-6, time_step=DT
+    ),
     "deprecated damper": damped("AnalyticalLinearDamper", damping_constant=0.1, time_step=DT),
     "laplace filter": damped("LaplaceDissipationFilter", filter_order=3),
-    "constrained and damped": constrained_and_damped, "tapered": tapered,
-}  # fmt: skip
+    "constrained and damped": constrained_and_damped,
+    "tapered": tapered,
+}
 """A function each of a library and a simulator, that returns the systems to compare"""
 
 
@@ -261,8 +297,11 @@ def test_callbacks_note_the_same(cls, tmp_path):
     for lib in (theirs, ours):
         sim, folder, history = simulator(lib), tmp_path / lib.__name__, defaultdict(list)
         rod = one_end_fixed(lib, sim)[0]
-        options = (dict(callback_params=history) if cls == "MyCallBack" else
-                   dict(filename="rod", directory=str(folder), method="npz", file_save_interval=1000))  # fmt: skip
+        options = (
+            dict(callback_params=history)
+            if cls == "MyCallBack"
+            else dict(filename="rod", directory=str(folder), method="npz", file_save_interval=1000)
+        )
         sim.collect_diagnostics(rod).using(getattr(lib, cls), step_skip=7, **options)
         sim.finalize()
         shake(rod)
@@ -293,15 +332,40 @@ def test_attributes_agree():
     a, b = rods
     # theirs are half a step old: bring them up to date
     a.compute_internal_forces_and_torques(0.0)
-    for name in ("lengths", "tangents", "radius", "dilatation", "voronoi_dilatation", "sigma", "kappa",
-                 "internal_stress", "internal_couple", "internal_forces", "internal_torques", "dilatation_rate", "mass",
-                 "volume", "density", "rest_lengths", "rest_voronoi_lengths", "shear_matrix", "bend_matrix",
-                 "mass_second_moment_of_inertia", "inv_mass_second_moment_of_inertia"):  # fmt: skip
+    for name in (
+        "lengths",
+        "tangents",
+        "radius",
+        "dilatation",
+        "voronoi_dilatation",
+        "sigma",
+        "kappa",
+        "internal_stress",
+        "internal_couple",
+        "internal_forces",
+        "internal_torques",
+        "dilatation_rate",
+        "mass",
+        "volume",
+        "density",
+        "rest_lengths",
+        "rest_voronoi_lengths",
+        "shear_matrix",
+        "bend_matrix",
+        "mass_second_moment_of_inertia",
+        "inv_mass_second_moment_of_inertia",
+    ):
         expected, found = getattr(a, name), getattr(b, name)
         assert found.shape == expected.shape, name
         assert np.abs(found - expected).max() <= 1e-7 * max(np.abs(expected).max(), 1e-12), name
-    for name in ("translational_energy", "rotational_energy", "bending_energy", "shear_energy",
-                 "position_center_of_mass", "velocity_center_of_mass"):  # fmt: skip
+    for name in (
+        "translational_energy",
+        "rotational_energy",
+        "bending_energy",
+        "shear_energy",
+        "position_center_of_mass",
+        "velocity_center_of_mass",
+    ):
         method = f"compute_{name}"
         assert np.allclose(getattr(b, method)(), getattr(a, method)(), rtol=1e-7, atol=1e-15), name
 
@@ -348,9 +412,7 @@ def body_on_rod(cls, **kwargs):
         for system in (rod, body, ball):
             sim.append(system)
         for first, second, index in ((body, rod, -1), (ball, body, 0)):
-            sim.connect(first, second, first_connect_idx=0, second_connect_idx=index).using(
-                getattr(lib, cls), **kwargs
-            )
+            sim.connect(first, second, first_connect_idx=0, second_connect_idx=index).using(getattr(lib, cls), **kwargs)
         return [rod, body, ball]
 
     return scene
@@ -369,12 +431,15 @@ def held_body(lib, sim):
 
 
 BODIES = {
-    "tumbling": tumbling, "rod on body, free": rod_on_body("FreeJoint", k=50.0, nu=0.01),
-    "rod on body, fixed": rod_on_body("FixedJoint", k=50.0, nu=0.01, kt=0.01, nut=1e-5), "held body": held_body,
+    "tumbling": tumbling,
+    "rod on body, free": rod_on_body("FreeJoint", k=50.0, nu=0.01),
+    "rod on body, fixed": rod_on_body("FixedJoint", k=50.0, nu=0.01, kt=0.01, nut=1e-5),
+    "held body": held_body,
     "rod on body, hinge": rod_on_body("HingeJoint", k=50.0, nu=0.01, kt=0.02, normal_direction=X),
     "bodies, hinge": body_on_rod("HingeJoint", k=50.0, nu=0.01, kt=0.02, normal_direction=X),
-    "bodies, fixed": body_on_rod("FixedJoint", k=50.0, nu=0.01, kt=0.01, nut=1e-5), "damped body": damped_body,
-}  # fmt: skip
+    "bodies, fixed": body_on_rod("FixedJoint", k=50.0, nu=0.01, kt=0.01, nut=1e-5),
+    "damped body": damped_body,
+}
 
 
 @pytest.mark.parametrize("scene", BODIES.values(), ids=BODIES.keys())
@@ -411,14 +476,19 @@ def on_plane(friction, tolerance=1e-8, is_load=False):
 
 def corrected(lib, name):
     """Return a class of contact, PyElastica's as docs/differences.md says that ours differs from it."""
-    own = {"RodRodContact": oracle.PairContact, "RodSelfContact": oracle.SelfContact,
-           "RodCylinderContact": oracle.CylinderContact, "RodSphereContact": oracle.SphereContact,
-           "CylinderPlaneContact": oracle.RimContact}  # fmt: skip
+    own = {
+        "RodRodContact": oracle.PairContact,
+        "RodSelfContact": oracle.SelfContact,
+        "RodCylinderContact": oracle.CylinderContact,
+        "RodSphereContact": oracle.SphereContact,
+        "CylinderPlaneContact": oracle.RimContact,
+    }
     return own[name] if lib is theirs else getattr(lib, name)
 
 
 def touching(name, make_systems, friction=False):
     """Return a scene of two systems in contact, or of one that touches itself, and whether it is on."""
+
     def scene(lib, sim, touches):
         systems = make_systems(lib)
         for system in systems:
@@ -435,16 +505,28 @@ def touching(name, make_systems, friction=False):
 
 def crossing(lib):
     thick = dict(length=0.5, radius=0.025)
-    return [make_rod(lib, n=12, start=(-0.25, 0.0, 0.0), direction=X, **thick),
-            make_rod(lib, n=10, start=(-0.1, 0.047, -0.25), direction=Z, normal=X, **thick)]  # fmt: skip
+    return [
+        make_rod(lib, n=12, start=(-0.25, 0.0, 0.0), direction=X, **thick),
+        make_rod(lib, n=10, start=(-0.1, 0.047, -0.25), direction=Z, normal=X, **thick),
+    ]
 
 
 def looped(lib):
     shape = loop(40, size=0.3, gap=0.047, density=1000.0, youngs_modulus=1e5, shear_modulus=4e4, radius=0.025)
     length = float(shape.rest_length.sum())
-    return [make_rod(lib, n=40, start=shape.position[:, 0], direction=shape.directors[2, :, 0],
-                     normal=shape.directors[0, :, 0], length=length, radius=0.025, position=shape.position.copy(),
-                     directors=shape.directors.copy())]  # fmt: skip
+    return [
+        make_rod(
+            lib,
+            n=40,
+            start=shape.position[:, 0],
+            direction=shape.directors[2, :, 0],
+            normal=shape.directors[0, :, 0],
+            length=length,
+            radius=0.025,
+            position=shape.position.copy(),
+            directors=shape.directors.copy(),
+        )
+    ]
 
 
 def rod_and(make_body):
@@ -469,29 +551,36 @@ def leaning(lib):
 
 
 CONTACTS = {
-    "plane": on_plane(False), "plane, sliding": on_plane(True), "plane, sticking": on_plane(True, 0.1),
-    "plane as a load": on_plane(False, is_load=True), "plane as a load, sliding": on_plane(True, is_load=True),
-    "rod and rod": touching("RodRodContact", crossing), "rod and itself": touching("RodSelfContact", looped),
+    "plane": on_plane(False),
+    "plane, sliding": on_plane(True),
+    "plane, sticking": on_plane(True, 0.1),
+    "plane as a load": on_plane(False, is_load=True),
+    "plane as a load, sliding": on_plane(True, is_load=True),
+    "rod and rod": touching("RodRodContact", crossing),
+    "rod and itself": touching("RodSelfContact", looped),
     "rod and cylinder": touching("RodCylinderContact", rod_and(upright)),
     "rod rubs cylinder": touching("RodCylinderContact", rod_and(upright), friction=True),
     "rod and sphere": touching("RodSphereContact", rod_and(make_ball)),
     "rod rubs sphere": touching("RodSphereContact", rod_and(make_ball), friction=True),
     "cylinder and plane": touching("CylinderPlaneContact", leaning),
-}  # fmt: skip
+}
 """A function each of a library, a simulator and whether there is contact, that returns the systems to compare"""
 
 
 def motion(system):
-    return (system.position_collection, system.velocity_collection, system.director_collection,
-            system.omega_collection)  # fmt: skip
+    return (system.position_collection, system.velocity_collection, system.director_collection, system.omega_collection)
 
 
 def disturbed(rest, rng, speed):
     """Return a state near one at rest: nodes by 1 mm, directors by 0.05 rad, velocities by 0.1 m/s and 2 rad/s."""
     x, v, Q, w = rest
     turns = rotations(0.05 * rng.standard_normal((Q.shape[2], 3)))
-    return (x + 1e-3 * rng.standard_normal(x.shape), speed * 0.1 * rng.standard_normal(v.shape),
-            np.einsum("kij,jlk->ilk", turns, Q), speed * 2.0 * rng.standard_normal(w.shape))  # fmt: skip
+    return (
+        x + 1e-3 * rng.standard_normal(x.shape),
+        speed * 0.1 * rng.standard_normal(v.shape),
+        np.einsum("kij,jlk->ilk", turns, Q),
+        speed * 2.0 * rng.standard_normal(w.shape),
+    )
 
 
 def prepared(lib, scene, touches=True):
@@ -537,8 +626,12 @@ def test_whole_step_from_a_thousand_states(scene):
 
 def largest(these, those):
     """Return the largest differences of x, v, Q and w of each system, (systems, 4)."""
-    return np.array([[np.abs(a - b).max() for a, b in zip(this, that, strict=True)]
-                     for this, that in zip(these, those, strict=True)])  # fmt: skip
+    return np.array(
+        [
+            [np.abs(a - b).max() for a, b in zip(this, that, strict=True)]
+            for this, that in zip(these, those, strict=True)
+        ]
+    )
 
 
 # arrays that are changed between two runs, and features that are called by hand
@@ -546,6 +639,7 @@ def largest(these, those):
 
 def changing(declare, second=None):
     """Return what declares a feature, with the array that is changed, on a rod or two in line."""
+
     def scene(lib, sim, array):
         rods = [make_rod(lib), make_rod(lib, start=(0.001, 0.0, 0.3), n=8)]
         for rod in rods:
@@ -557,20 +651,34 @@ def changing(declare, second=None):
 
 
 def law(name, *before, after=(), **kwargs):
-    return changing(lambda lib, sim, rods, array: sim.add_forcing_to(rods[0]).using(
-        getattr(lib, name), *before, array, *after, **kwargs))  # fmt: skip
+    return changing(
+        lambda lib, sim, rods, array: sim.add_forcing_to(rods[0]).using(
+            getattr(lib, name), *before, array, *after, **kwargs
+        )
+    )
 
 
 def joint(name, argument, **kwargs):
-    return changing(lambda lib, sim, rods, array: sim.connect(rods[0], rods[1], -1, 0).using(
-        getattr(lib, name), k=50.0, nu=0.01, kt=0.01, **{argument: array}, **kwargs))  # fmt: skip
+    return changing(
+        lambda lib, sim, rods, array: sim.connect(rods[0], rods[1], -1, 0).using(
+            getattr(lib, name), k=50.0, nu=0.01, kt=0.01, **{argument: array}, **kwargs
+        )
+    )
 
 
 def muscle(lib, sim, rods, array):
     sim.add_forcing_to(rods[0]).using(
-        lib.MuscleTorques, base_length=0.3, b_coeff=np.array([1e-3, 2e-3, 1e-3, 3e-3]), period=0.02, wave_number=4.0,
-        phase_shift=0.3, direction=array, rest_lengths=rods[0].rest_lengths, ramp_up_time=0.001, with_spline=True,
-    )  # fmt: skip
+        lib.MuscleTorques,
+        base_length=0.3,
+        b_coeff=np.array([1e-3, 2e-3, 1e-3, 3e-3]),
+        period=0.02,
+        wave_number=4.0,
+        phase_shift=0.3,
+        direction=array,
+        rest_lengths=rods[0].rest_lengths,
+        ramp_up_time=0.001,
+        with_spline=True,
+    )
 
 
 def floor(lib, sim, rods, array):
@@ -594,12 +702,14 @@ ARRAYS = {
     "end force": (law("EndpointForces", 0.01 * X, ramp_up_time=1e-4), 0.02 * Y),
     "tangent": (law("EndpointForcesSinusoidal", 0.01, 0.02, 1e-4, after=(Y,)), Z),
     "normal": (law("EndpointForcesSinusoidal", 0.01, 0.02, 1e-4, Z), Y),
-    "direction of a force": (law("UniformForces", 0.05), Y), "direction of a torque": (law("UniformTorques", 1e-3), X),
-    "muscles": (changing(muscle), np.array([0.0, 0.6, 0.8])), "hinge": (joint("HingeJoint", "normal_direction"), X),
+    "direction of a force": (law("UniformForces", 0.05), Y),
+    "direction of a torque": (law("UniformTorques", 1e-3), X),
+    "muscles": (changing(muscle), np.array([0.0, 0.6, 0.8])),
+    "hinge": (joint("HingeJoint", "normal_direction"), X),
     "rotation": (joint("FixedJoint", "rest_rotation_matrix"), np.eye(3)),
     "plane": (changing(floor), np.array([0.0, -0.0101, 0.0])),
     "attribute of a plane": (changing(moved_floor), np.zeros(3)),
-}  # fmt: skip
+}
 """A scene, and the array that it is given"""
 
 
@@ -621,12 +731,16 @@ def test_arrays_that_change_between_runs_are_followed_where_theirs_are(scene, gi
 
 
 BY_HAND = {
-    "gravity": ("GravityForces", (np.array([0.1, -9.8, 2.0]),), {}), "uniform force": ("UniformForces", (0.05, Y), {}),
-    "endpoint": ("EndpointForces", (0.01 * X, 0.02 * Y, 2e-3), {}), "uniform torque": ("UniformTorques", (1e-3, X), {}),
+    "gravity": ("GravityForces", (np.array([0.1, -9.8, 2.0]),), {}),
+    "uniform force": ("UniformForces", (0.05, Y), {}),
+    "endpoint": ("EndpointForces", (0.01 * X, 0.02 * Y, 2e-3), {}),
+    "uniform torque": ("UniformTorques", (1e-3, X), {}),
     "sinusoidal": ("EndpointForcesSinusoidal", (0.01, 0.02, 5e-4, Z, Y), {}),
-    "slender body": ("SlenderBodyTheory", (0.3,), {}), "free joint": ("FreeJoint", (50.0, 0.01), {}),
-    "hinge": ("HingeJoint", (50.0, 0.01, 0.02, X), {}), "fixed joint": ("FixedJoint", (50.0, 0.01, 0.01, 1e-5), {}),
-}  # fmt: skip
+    "slender body": ("SlenderBodyTheory", (0.3,), {}),
+    "free joint": ("FreeJoint", (50.0, 0.01), {}),
+    "hinge": ("HingeJoint", (50.0, 0.01, 0.02, X), {}),
+    "fixed joint": ("FixedJoint", (50.0, 0.01, 0.01, 1e-5), {}),
+}
 
 
 @pytest.mark.parametrize(("name", "args", "kwargs"), BY_HAND.values(), ids=BY_HAND.keys())
@@ -651,18 +765,23 @@ def test_loads_by_hand(name, args, kwargs):
 
 HANDED = {
     "plane": ("RodPlaneContact", dict(k=10.0, nu=1e-3)),
-    "plane, sliding": ("RodPlaneContactWithAnisotropicFriction", dict(
-        k=10.0, nu=1e-3, slip_velocity_tol=1e-2, static_mu_array=2.0 * MU, kinetic_mu_array=MU)),
+    "plane, sliding": (
+        "RodPlaneContactWithAnisotropicFriction",
+        dict(k=10.0, nu=1e-3, slip_velocity_tol=1e-2, static_mu_array=2.0 * MU, kinetic_mu_array=MU),
+    ),
     "rod and rod": ("RodRodContact", dict(k=500.0, nu=0.5)),
     "rod and itself": ("RodSelfContact", dict(k=500.0, nu=0.5)),
     "rod and cylinder": ("RodCylinderContact", dict(k=500.0, nu=0.5)),
     "rod and sphere": ("RodSphereContact", dict(k=500.0, nu=0.5)),
     "cylinder and plane": ("CylinderPlaneContact", dict(k=500.0, nu=0.5)),
-}  # fmt: skip
+}
 TOUCHING = {
-    "RodRodContact": crossing, "RodSelfContact": looped, "RodCylinderContact": rod_and(upright),
-    "RodSphereContact": rod_and(make_ball), "CylinderPlaneContact": leaning,
-}  # fmt: skip
+    "RodRodContact": crossing,
+    "RodSelfContact": looped,
+    "RodCylinderContact": rod_and(upright),
+    "RodSphereContact": rod_and(make_ball),
+    "CylinderPlaneContact": leaning,
+}
 
 
 def over_plane(lib):
@@ -688,8 +807,9 @@ def test_contact_by_hand(name, law):
         before = [each.external_forces.copy() for each in movers]
         contact = corrected(lib, name) if name in TOUCHING else getattr(lib, name)
         contact(**law).apply_contact(systems[0], systems[-1])
-        found.append(np.concatenate([a.ravel() for each in movers
-                                     for a in (each.external_forces, each.external_torques)]))  # fmt: skip
+        found.append(
+            np.concatenate([a.ravel() for each in movers for a in (each.external_forces, each.external_torques)])
+        )
         assert any(np.abs(each.external_forces - a).max() > 1e-4 for each, a in zip(movers, before, strict=True))
     assert np.abs(found[0] - found[1]).max() < 1e-10 * np.abs(found[0]).max()
 
@@ -734,17 +854,29 @@ def oval(lib, n=16, **options):
     tangents = edges / np.linalg.norm(edges, axis=0)
     up = np.repeat(Y[:, None], n, axis=1)
     rod = lib.CosseratRod.ring_rod(
-        n, np.zeros(3), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e5, shear_modulus=4e4, position=nodes,
-        directors=np.stack([up, np.cross(tangents, up, axis=0), tangents]), **options,
-    )  # fmt: skip
+        n,
+        np.zeros(3),
+        Z,
+        Y,
+        0.5,
+        0.01,
+        1000.0,
+        youngs_modulus=1e5,
+        shear_modulus=4e4,
+        position=nodes,
+        directors=np.stack([up, np.cross(tangents, up, axis=0), tangents]),
+        **options,
+    )
     half = 0.5 * rod.density * rod.volume
     rod.mass[:] = half + np.roll(half, 1)
     return rod
 
 
 def ring_at_rest(lib, sim):
-    rods = [lib.CosseratRod.ring_rod(16, np.array([2.0, 0.0, 0.0]), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e5),
-            oval(lib)]  # fmt: skip
+    rods = [
+        lib.CosseratRod.ring_rod(16, np.array([2.0, 0.0, 0.0]), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e5),
+        oval(lib),
+    ]
     for rod in rods:
         sim.append(rod)
     return rods
@@ -791,8 +923,10 @@ def test_a_ring_is_at_rest_as_it_is_at_finalize():
 def test_nodes_of_a_ring_have_half_of_the_mass_of_each_element_beside_them():
     """Theirs have all of the one after them, which puts the centre of mass half an element off."""
     density = np.linspace(500.0, 1500.0, 16)
-    rods = [lib.CosseratRod.ring_rod(16, np.zeros(3), Z, Y, 0.5, 0.01, density, youngs_modulus=1e5, shear_modulus=4e4)
-            for lib in (ours, theirs)]  # fmt: skip
+    rods = [
+        lib.CosseratRod.ring_rod(16, np.zeros(3), Z, Y, 0.5, 0.01, density, youngs_modulus=1e5, shear_modulus=4e4)
+        for lib in (ours, theirs)
+    ]
     mass = density * rods[0].volume
     assert np.allclose(rods[0].mass, 0.5 * (mass + np.roll(mass, 1)), rtol=1e-14)
     assert np.allclose(rods[1].mass, mass, rtol=1e-14)

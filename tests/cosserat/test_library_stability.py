@@ -85,9 +85,10 @@ SCENES = {
     "body": (body_joined, "joint of CosseratRod 0 and Sphere 1"),
     "plane": (lying(1e6, 0.0), "CosseratRod 0 with a plane"),
     "damping of a plane": (lying(1.0, 1e4), "CosseratRod 0 with a plane"),
-    "drag": (dragged, "RayleighDissipation on CosseratRod 0"), "viscosity": (viscous, "viscosity of CosseratRod 0"),
+    "drag": (dragged, "RayleighDissipation on CosseratRod 0"),
+    "viscosity": (viscous, "viscosity of CosseratRod 0"),
     "viscosity of spin": (spinning, "viscosity of CosseratRod 0"),
-}  # fmt: skip
+}
 """What declares it, and what the warning calls it"""
 
 
@@ -138,11 +139,19 @@ CONTACTS = {
     "itself": (ea.RodSelfContact, lambda: (make_rod(),), dict(k=1e6, nu=0.0), "CosseratRod 0 with itself"),
     "cylinder": (ea.RodCylinderContact, beside, dict(k=1e6, nu=0.0), "CosseratRod 0 with Cylinder 1"),
     "damping": (ea.RodCylinderContact, beside, dict(k=1.0, nu=1e4), "CosseratRod 0 with Cylinder 1"),
-    "friction": (ea.RodCylinderContact, beside, dict(k=1.0, nu=0.0, friction_coefficient=0.5,
-                                                     velocity_damping_coefficient=1e4), "friction of CosseratRod 0"),
-    "cylinder on plane": (ea.CylinderPlaneContact, lambda: (beside()[1], ea.Plane(np.zeros(3), Y)),
-                          dict(k=1e8, nu=0.0), "Cylinder 0 with a plane"),
-}  # fmt: skip
+    "friction": (
+        ea.RodCylinderContact,
+        beside,
+        dict(k=1.0, nu=0.0, friction_coefficient=0.5, velocity_damping_coefficient=1e4),
+        "friction of CosseratRod 0",
+    ),
+    "cylinder on plane": (
+        ea.CylinderPlaneContact,
+        lambda: (beside()[1], ea.Plane(np.zeros(3), Y)),
+        dict(k=1e8, nu=0.0),
+        "Cylinder 0 with a plane",
+    ),
+}
 
 
 @pytest.mark.parametrize(("cls", "make", "law", "culprit"), CONTACTS.values(), ids=CONTACTS.keys())
@@ -163,15 +172,43 @@ def test_the_warning_at_finalize_takes_in_joints():
         sim.finalize()
 
 
-@pytest.mark.parametrize(("options", "culprit"), [
-    (dict(planes=[Plane(stiffness=1e9)]), "plane"), (dict(planes=[Plane(damping=1e6)]), "plane"),
-    (dict(rod_contact=Contact(stiffness=1e9)), "rod 0 with itself"),
-    (dict(cylinders=[Cylinder(start=(1.0, 0.0, 0.0), direction=Y, normal=X, length=0.1, radius=0.1, mass=1.0,
-                              rods=Contact(stiffness=1e9), ground_stiffness=1.0)]), "rod 0 with body 0"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("options", "culprit"),
+    [
+        (dict(planes=[Plane(stiffness=1e9)]), "plane"),
+        (dict(planes=[Plane(damping=1e6)]), "plane"),
+        (dict(rod_contact=Contact(stiffness=1e9)), "rod 0 with itself"),
+        (
+            dict(
+                cylinders=[
+                    Cylinder(
+                        start=(1.0, 0.0, 0.0),
+                        direction=Y,
+                        normal=X,
+                        length=0.1,
+                        radius=0.1,
+                        mass=1.0,
+                        rods=Contact(stiffness=1e9),
+                        ground_stiffness=1.0,
+                    )
+                ]
+            ),
+            "rod 0 with body 0",
+        ),
+    ],
+)
 def test_models_of_environments_are_refused_if_their_contacts_are_too_stiff(options, culprit):
-    rod = Rod.straight(8, start=(0, 0, 0), direction=Z, normal=Y, length=0.4, radius=0.02, density=1000.0,
-                       youngs_modulus=1e2, shear_modulus=4e1)  # fmt: skip
+    rod = Rod.straight(
+        8,
+        start=(0, 0, 0),
+        direction=Z,
+        normal=Y,
+        length=0.4,
+        radius=0.02,
+        density=1000.0,
+        youngs_modulus=1e2,
+        shear_modulus=4e1,
+    )
     require_stable_model(build_model([rod]), 1e-3)
     with pytest.raises(ValueError, match=f"{culprit} to be stable, not 0.001 s"):
         require_stable_model(build_model([rod], **options), 1e-3)

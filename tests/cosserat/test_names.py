@@ -72,8 +72,11 @@ wrappers.connections: Connections
 wrappers.constraints: Constraints
 wrappers.forcing: Forcing
 """
-PATHS = [(path, name) for path, _, names in (line.partition(": ") for line in NAMES.strip().splitlines())
-         for name in names.split()]  # fmt: skip
+PATHS = [
+    (path, name)
+    for path, _, names in (line.partition(": ") for line in NAMES.strip().splitlines())
+    for name in names.split()
+]
 
 
 @pytest.mark.parametrize(("path", "name"), PATHS, ids=[f"{path}.{name}" for path, name in PATHS])
@@ -207,8 +210,11 @@ def test_every_public_method_of_the_original_is_there_or_refused():
     assert n_walked > 80
 
 
-OLD = [(path, name) for path, _, names in (line.partition(": ") for line in OLDER.strip().splitlines())
-       for name in names.split()]  # fmt: skip
+OLD = [
+    (path, name)
+    for path, _, names in (line.partition(": ") for line in OLDER.strip().splitlines())
+    for name in names.split()
+]
 
 
 @pytest.mark.parametrize(("path", "name"), OLD, ids=[f"{path}.{name}" for path, name in OLD])
@@ -243,8 +249,15 @@ def test_modules_that_scripts_use_as_attributes():
     theirs = pytest.importorskip("elastica")
     attributes = {name for name, value in vars(theirs).items() if inspect.ismodule(value)}
     mine = {name for name, value in vars(library).items() if inspect.ismodule(value)}
-    machinery = {"collision", "memory_block", "reset_functions_for_block_structure", "np", "os", "_contact_functions",
-                 "_synchronize_periodic_boundary"}  # fmt: skip
+    machinery = {
+        "collision",
+        "memory_block",
+        "reset_functions_for_block_structure",
+        "np",
+        "os",
+        "_contact_functions",
+        "_synchronize_periodic_boundary",
+    }
     assert attributes - machinery - mine == set()
 
 

@@ -26,10 +26,12 @@ class Kept(ea.MyCallBack):
 def recording(tmp_path_factory):
     """A rod, a ring, a cylinder and a sphere that fall, with what was where, by other callbacks."""
     material = dict(density=1000.0, youngs_modulus=1e5)
-    systems = [ea.CosseratRod.straight_rod(8, np.zeros(3), X, Y, 0.2, 0.01, **material),
-               ea.CosseratRod.ring_rod(12, np.array([0.0, 0.0, 1.0]), X, Y, 0.5, 0.01, **material),
-               ea.Cylinder(np.array([0.0, 0.5, 0.0]), X, Y, 0.1, 0.02, 500.0),
-               ea.Sphere(np.array([0.0, 1.0, 0.0]), 0.03, 500.0)]  # fmt: skip
+    systems = [
+        ea.CosseratRod.straight_rod(8, np.zeros(3), X, Y, 0.2, 0.01, **material),
+        ea.CosseratRod.ring_rod(12, np.array([0.0, 0.0, 1.0]), X, Y, 0.5, 0.01, **material),
+        ea.Cylinder(np.array([0.0, 0.5, 0.0]), X, Y, 0.1, 0.02, 500.0),
+        ea.Sphere(np.array([0.0, 1.0, 0.0]), 0.03, 500.0),
+    ]
     sim, kept = Simulator(), [ea_lists() for _ in systems]
     for system, lists in zip(systems, kept, strict=True):
         sim.append(system)
@@ -54,10 +56,15 @@ def column(path, entity, component):
     return batch, batch.column(component)
 
 
-@pytest.mark.parametrize(("entity", "number", "component"), [
-    ("/rods/0/nodes", 0, "Points3D:positions"), ("/rods/1/nodes", 1, "Points3D:positions"),
-    ("/bodies/0", 2, "Cylinders3D:centers"), ("/bodies/1", 3, "Ellipsoids3D:centers"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("entity", "number", "component"),
+    [
+        ("/rods/0/nodes", 0, "Points3D:positions"),
+        ("/rods/1/nodes", 1, "Points3D:positions"),
+        ("/bodies/0", 2, "Cylinders3D:centers"),
+        ("/bodies/1", 3, "Ellipsoids3D:centers"),
+    ],
+)
 def test_reading_back_gives_the_same_positions(recording, entity, number, component):
     path, _, kept = recording
     batch, values = column(path, entity, component)

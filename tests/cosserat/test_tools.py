@@ -54,13 +54,15 @@ CALLS = [
     (_rotations, their_rotations, "_skew_symmetrize", (A,)),
     (transformations, their_transformations, "rotate", (np.eye(3), 0.4, V)),
     (transformations, their_transformations, "skew_symmetrize", (V,)),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("mine", "theirs", "name", "given"), CALLS, ids=[name for _, _, name, _ in CALLS])
 def test_same_numbers(mine, theirs, name, given):
-    expected, found = (getattr(each, name)(*(np.array(a) if isinstance(a, np.ndarray) else a for a in given))
-                       for each in (theirs, mine))  # fmt: skip
+    expected, found = (
+        getattr(each, name)(*(np.array(a) if isinstance(a, np.ndarray) else a for a in given))
+        for each in (theirs, mine)
+    )
     assert np.shape(found) == np.shape(expected)
     assert np.allclose(found, expected, atol=1e-12)
 
@@ -77,10 +79,16 @@ SEGMENT_PAIRS[:10, 3] = -0.7 * SEGMENT_PAIRS[:10, 1]
 SEGMENT_PAIRS[10:20, 2] += 5.0
 HELPERS = {
     "contact_utils": [
-        ("_dot_product", (A[:, 0], B[:, 0])), ("_norm", (A[:, 0],)), ("_clip", (0.3, 0.5, 1.0)),
-        ("_clip", (1.3, 0.5, 1.0)), ("_out_of_bounds", (0.3, 0.5, 1.0)), ("_out_of_bounds", (0.7, 0.5, 1.0)),
-        ("_node_to_element_mass_or_force", (A,)), ("_node_to_element_position", (A,)),
-        ("_node_to_element_velocity", (MASS, A)), ("_find_slipping_elements", (A, 0.8)),
+        ("_dot_product", (A[:, 0], B[:, 0])),
+        ("_norm", (A[:, 0],)),
+        ("_clip", (0.3, 0.5, 1.0)),
+        ("_clip", (1.3, 0.5, 1.0)),
+        ("_out_of_bounds", (0.3, 0.5, 1.0)),
+        ("_out_of_bounds", (0.7, 0.5, 1.0)),
+        ("_node_to_element_mass_or_force", (A,)),
+        ("_node_to_element_position", (A,)),
+        ("_node_to_element_velocity", (MASS, A)),
+        ("_find_slipping_elements", (A, 0.8)),
         ("_aabbs_not_intersecting", (np.array([[0.0, 1.0]] * 3), np.array([[0.5, 1.0], [0.9, 2.0], [1.0, 3.0]]))),
         ("_aabbs_not_intersecting", (np.array([[0.0, 1.0]] * 3), np.array([[0.5, 1.0], [0.9, 2.0], [1.1, 3.0]]))),
         ("_prune_using_aabbs_rod_rod", (*ROD_ONE, *ROD_TWO)),
@@ -94,22 +102,29 @@ HELPERS = {
     ],
     "interaction": [
         ("sum_over_elements", (S,)),
-        ("slender_body_forces", (np.diff(A) / np.linalg.norm(np.diff(A), axis=0), B, 0.3, LENGTHS, 0.01 * RADIUS,
-                                 MASS)),
+        (
+            "slender_body_forces",
+            (np.diff(A) / np.linalg.norm(np.diff(A), axis=0), B, 0.3, LENGTHS, 0.01 * RADIUS, MASS),
+        ),
     ],
     "restart": [("all_equal", ([1, 1, 1],)), ("all_equal", ([1, 2],)), ("all_equal", ([],)), ("all_equal", ([0],))],
     "utils": [
-        ("perm_parity", ([0, 1, 2],)), ("perm_parity", ([1, 0, 2],)), ("perm_parity", ([3, 0, 1, 2],)),
+        ("perm_parity", ([0, 1, 2],)),
+        ("perm_parity", ([1, 0, 2],)),
+        ("perm_parity", ([3, 0, 1, 2],)),
         ("perm_parity", ([2, 0, 1, 4, 3],)),
     ],
-}  # fmt: skip
+}
 
 
-@pytest.mark.parametrize(("module", "name", "given"), [(module, *call) for module, calls in HELPERS.items()
-                                                       for call in calls])  # fmt: skip
+@pytest.mark.parametrize(
+    ("module", "name", "given"), [(module, *call) for module, calls in HELPERS.items() for call in calls]
+)
 def test_helpers(module, name, given):
-    expected, found = (getattr(importlib.import_module(f"{lib}.{module}"), name)(*copy.deepcopy(given))
-                       for lib in ("elastica", "elastica_gym.cosserat"))  # fmt: skip
+    expected, found = (
+        getattr(importlib.import_module(f"{lib}.{module}"), name)(*copy.deepcopy(given))
+        for lib in ("elastica", "elastica_gym.cosserat")
+    )
     expected, found = (each if isinstance(each, tuple) else (each,) for each in (expected, found))
     for one, other in zip(expected, found, strict=True):
         assert np.shape(one) == np.shape(other) and np.allclose(one, other, atol=1e-12)
@@ -138,16 +153,21 @@ def test_half_of_an_element_to_each_node():
 
 def test_stages_of_a_rod_in_place():
     """All that theirs computes in a step, by the functions that scripts import from `rod.cosserat_rod`."""
-    rod = their_rods.CosseratRod.straight_rod(N, np.zeros(3), np.eye(3)[2], np.eye(3)[1], 0.3, 0.01, 1000.0,
-                                              youngs_modulus=1e5)  # fmt: skip
+    rod = their_rods.CosseratRod.straight_rod(
+        N, np.zeros(3), np.eye(3)[2], np.eye(3)[1], 0.3, 0.01, 1000.0, youngs_modulus=1e5
+    )
     rng = np.random.default_rng(3)
     rod.position_collection += 0.01 * rng.standard_normal((3, N + 1))
     turn = 0.3 * rng.standard_normal((3, N))
     rod.director_collection[:] = their_rotations._rotate(rod.director_collection, 1.0, turn)
     for name in ("velocity_collection", "omega_collection", "external_forces", "external_torques", "rest_kappa"):
         getattr(rod, name)[:] = rng.standard_normal(getattr(rod, name).shape)
-    functions = ("_compute_internal_forces", "_compute_internal_torques", "_update_accelerations",
-                 "_zeroed_out_external_forces_and_torques")  # fmt: skip
+    functions = (
+        "_compute_internal_forces",
+        "_compute_internal_torques",
+        "_update_accelerations",
+        "_zeroed_out_external_forces_and_torques",
+    )
     results = []
     for module in (their_rods, our_rods):
         fields = {name: value.copy() for name, value in vars(rod).items() if isinstance(value, np.ndarray)}
@@ -163,19 +183,42 @@ def test_stages_of_a_rod_in_place():
     assert np.array_equal(our_rods._get_z_vector(), their_rods._get_z_vector())
 
 
-WRITTEN = ("lengths", "tangents", "radius", "dilatation", "voronoi_dilatation", "dilatation_rate", "sigma", "kappa",
-           "internal_stress", "internal_couple", "internal_forces", "internal_torques", "acceleration_collection")
+WRITTEN = (
+    "lengths",
+    "tangents",
+    "radius",
+    "dilatation",
+    "voronoi_dilatation",
+    "dilatation_rate",
+    "sigma",
+    "kappa",
+    "internal_stress",
+    "internal_couple",
+    "internal_forces",
+    "internal_torques",
+    "acceleration_collection",
+)
 
 
 def test_loads_and_constraints_as_functions():
     calls = {
         ("external_forces", "GravityForces", "compute_gravity_forces"): (V, MASS, A),
         ("external_forces", "EndpointForces", "compute_end_point_forces"): (A, V, -2.0 * V, 0.3, 1.0),
-        ("external_forces", "MuscleTorques", "compute_muscle_torques"):
-            (0.3, S, np.linspace(0.1, 1.0, N), 2.0, 3.0, 0.2, 1.0, V, M, A),
+        ("external_forces", "MuscleTorques", "compute_muscle_torques"): (
+            0.3,
+            S,
+            np.linspace(0.1, 1.0, N),
+            2.0,
+            3.0,
+            0.2,
+            1.0,
+            V,
+            M,
+            A,
+        ),
         ("boundary_conditions", "OneEndFixedBC", "compute_constrain_values"): (A, V, M, L[..., 0]),
         ("boundary_conditions", "OneEndFixedBC", "compute_constrain_rates"): (A, B),
-    }  # fmt: skip
+    }
     for (module, cls, name), given in calls.items():
         results = []
         for lib in ("elastica", "elastica_gym.cosserat"):
@@ -220,14 +263,16 @@ def test_shapes_of_frames(shape):
 SEGMENTS = ["next_tangent", "end_to_end", "net_tangent"]
 TIMES = np.linspace(0.0, 0.93 * 2.0 * np.pi, 33)
 LINES = {
-    "trefoil": np.array([np.sin(TIMES) + 2.0 * np.sin(2.0 * TIMES), np.cos(TIMES) - 2.0 * np.cos(2.0 * TIMES),
-                         -np.sin(3.0 * TIMES)]),
-    "even trefoil": np.array([np.sin(TIMES) + 2.0 * np.sin(2.0 * TIMES), np.cos(TIMES) - 2.0 * np.cos(2.0 * TIMES),
-                              -np.sin(3.0 * TIMES)])[:, :-1],
+    "trefoil": np.array(
+        [np.sin(TIMES) + 2.0 * np.sin(2.0 * TIMES), np.cos(TIMES) - 2.0 * np.cos(2.0 * TIMES), -np.sin(3.0 * TIMES)]
+    ),
+    "even trefoil": np.array(
+        [np.sin(TIMES) + 2.0 * np.sin(2.0 * TIMES), np.cos(TIMES) - 2.0 * np.cos(2.0 * TIMES), -np.sin(3.0 * TIMES)]
+    )[:, :-1],
     "coil": np.array([np.cos(2.0 * TIMES), np.sin(2.0 * TIMES), 0.3 * TIMES + 0.1 * np.sin(3.0 * TIMES)]),
     "walk": np.cumsum(np.random.default_rng(0).standard_normal((3, 16)), axis=1),
     "another walk": np.cumsum(np.random.default_rng(1).standard_normal((3, 15)), axis=1),
-}  # fmt: skip
+}
 LENGTH = 5.0
 
 
@@ -282,8 +327,9 @@ RIBBONS = {
 
 
 # (the trefoil's end along its tangent comes too close to the line beside for quadrature)
-@pytest.mark.parametrize(("name", "kind"), [*(("coil", kind) for kind in SEGMENTS), ("trefoil", "end_to_end"),
-                                            ("trefoil", "net_tangent")])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "kind"), [*(("coil", kind) for kind in SEGMENTS), ("trefoil", "end_to_end"), ("trefoil", "net_tangent")]
+)
 def test_link_is_the_gauss_integral(name, kind):
     line, normals = LINES[name], RIBBONS[name]
     tangents = np.diff(line)

@@ -42,10 +42,17 @@ class Twin:
     """
 
     def __init__(
-        self, rods: Sequence[Rod], *, dt: float, planes: Sequence[Plane] = (), waves: Sequence[Wave] = (),
-        gravity: tuple[float, float, float] = (0.0, 0.0, 0.0), cylinders: Sequence[Cylinder] = (),
-        rod_contact: Contact | None = None, corrected: bool = True,
-    ) -> None:  # fmt: skip
+        self,
+        rods: Sequence[Rod],
+        *,
+        dt: float,
+        planes: Sequence[Plane] = (),
+        waves: Sequence[Wave] = (),
+        gravity: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        cylinders: Sequence[Cylinder] = (),
+        rod_contact: Contact | None = None,
+        corrected: bool = True,
+    ) -> None:
         self._simulator = simulator = _Simulator()
         self.rods, self.bodies = [_rod(rod) for rod in rods], [_body(each, corrected) for each in cylinders]
         for system in (*self.rods, *self.bodies):
@@ -54,10 +61,17 @@ class Twin:
                 simulator.add_forcing_to(system).using(ea.GravityForces, acc_gravity=np.array(gravity))
         for wave in waves:
             simulator.add_forcing_to(self.rods[wave.rod]).using(
-                ea.MuscleTorques, base_length=1.0, b_coeff=np.array(wave.coefficients), period=wave.period,
-                wave_number=wave.wave_number, phase_shift=wave.phase, rest_lengths=rods[wave.rod].rest_length,
-                ramp_up_time=wave.ramp_time or NO_RAMP, direction=np.array(wave.axis), with_spline=True,
-            )  # fmt: skip
+                ea.MuscleTorques,
+                base_length=1.0,
+                b_coeff=np.array(wave.coefficients),
+                period=wave.period,
+                wave_number=wave.wave_number,
+                phase_shift=wave.phase,
+                rest_lengths=rods[wave.rod].rest_length,
+                ramp_up_time=wave.ramp_time or NO_RAMP,
+                direction=np.array(wave.axis),
+                with_spline=True,
+            )
         self._add_contacts(cylinders, rod_contact, corrected)
         for plane in planes:
             self._add_plane(plane, cylinders, corrected)
@@ -87,10 +101,13 @@ class Twin:
         self._simulator.append(ground)
         for rod in self.rods:
             self._simulator.detect_contact_between(rod, ground).using(
-                ea.RodPlaneContactWithAnisotropicFriction, k=plane.stiffness, nu=plane.damping,
-                slip_velocity_tol=plane.slip_tolerance, static_mu_array=np.array(plane.static_friction),
+                ea.RodPlaneContactWithAnisotropicFriction,
+                k=plane.stiffness,
+                nu=plane.damping,
+                slip_velocity_tol=plane.slip_tolerance,
+                static_mu_array=np.array(plane.static_friction),
                 kinetic_mu_array=np.array(plane.kinetic_friction),
-            )  # fmt: skip
+            )
         if not corrected:
             for body, cylinder in zip(self.bodies, cylinders, strict=True):
                 self._simulator.detect_contact_between(body, ground).using(
@@ -118,8 +135,10 @@ class Twin:
     @property
     def motions(self) -> list[tuple[Array, Array, Array, Array]]:
         """Positions, velocities, directors and angular velocities, of each rod and then of each body."""
-        return [(each.position_collection, each.velocity_collection, each.director_collection, each.omega_collection)
-                for each in (*self.rods, *self.bodies)]  # fmt: skip
+        return [
+            (each.position_collection, each.velocity_collection, each.director_collection, each.omega_collection)
+            for each in (*self.rods, *self.bodies)
+        ]
 
 
 # contact, corrected
@@ -280,8 +299,12 @@ def _load(rod: Any, k: int, s: float, f: Array) -> None:
 def _law(contact: Contact, *, friction: bool) -> dict[str, float]:
     if not friction:
         return {"k": contact.stiffness, "nu": contact.damping}
-    return {"k": contact.stiffness, "nu": contact.damping, "friction_coefficient": contact.friction,
-            "velocity_damping_coefficient": contact.slip_damping}  # fmt: skip
+    return {
+        "k": contact.stiffness,
+        "nu": contact.damping,
+        "friction_coefficient": contact.friction,
+        "velocity_damping_coefficient": contact.slip_damping,
+    }
 
 
 def _body(cylinder: Cylinder, corrected: bool) -> ea.Cylinder:
@@ -297,10 +320,20 @@ def _rod(rod: Rod) -> ea.CosseratRod:
     first, last = rod.position[:, 0], rod.position[:, -1]
     length = float(np.linalg.norm(last - first))
     return ea.CosseratRod.straight_rod(
-        rod.n_elements, first.copy(), (last - first) / length, rod.directors[0, :, 0].copy(), length, rod.radius.copy(),
-        rod.density, youngs_modulus=rod.youngs_modulus, shear_modulus=rod.shear_modulus, position=rod.position.copy(),
-        directors=rod.directors.copy(), rest_kappa=rod.rest_kappa.copy(), rest_sigma=rod.rest_sigma.copy(),
-    )  # fmt: skip
+        rod.n_elements,
+        first.copy(),
+        (last - first) / length,
+        rod.directors[0, :, 0].copy(),
+        length,
+        rod.radius.copy(),
+        rod.density,
+        youngs_modulus=rod.youngs_modulus,
+        shear_modulus=rod.shear_modulus,
+        position=rod.position.copy(),
+        directors=rod.directors.copy(),
+        rest_kappa=rod.rest_kappa.copy(),
+        rest_sigma=rod.rest_sigma.copy(),
+    )
 
 
 def both(
@@ -318,15 +351,24 @@ def both(
 
 def motions(model: Model, state: State) -> list[tuple[Array, Array, Array, Array]]:
     """Return views of our motion, as `Twin.motions`."""
-    bodies = [(state.body_x[0, b][:, None], state.body_v[0, b][:, None], state.body_Q[0, b][:, :, None],
-               state.body_w[0, b][:, None]) for b in range(model.cylinders.mass.size)]  # fmt: skip
+    bodies = [
+        (
+            state.body_x[0, b][:, None],
+            state.body_v[0, b][:, None],
+            state.body_Q[0, b][:, :, None],
+            state.body_w[0, b][:, None],
+        )
+        for b in range(model.cylinders.mass.size)
+    ]
     return [*(motion(model, state, rod=r) for r in range(model.n_elements.size)), *bodies]
 
 
 def distance(model: Model, state: State, twin: Twin) -> float:
     """Return the largest difference of positions [m]."""
-    return max(float(np.abs(ours[0] - theirs[0]).max())
-               for ours, theirs in zip(motions(model, state), twin.motions, strict=True))  # fmt: skip
+    return max(
+        float(np.abs(ours[0] - theirs[0]).max())
+        for ours, theirs in zip(motions(model, state), twin.motions, strict=True)
+    )
 
 
 def worst_step(
@@ -362,5 +404,9 @@ def worst_step(
 
 def _largest(these: Sequence[tuple[Array, ...]], those: Sequence[tuple[Array, ...]]) -> Array:
     """Return the largest differences of x, v, Q and w of each rod and body, (rods and bodies, 4)."""
-    return np.array([[np.abs(a - b).max() for a, b in zip(this, that, strict=True)]
-                     for this, that in zip(these, those, strict=True)])  # fmt: skip
+    return np.array(
+        [
+            [np.abs(a - b).max() for a, b in zip(this, that, strict=True)]
+            for this, that in zip(these, those, strict=True)
+        ]
+    )

@@ -23,18 +23,29 @@ WAVE = Wave(
 def snake(n: int = 50, **material: float) -> Rod:
     """Return the continuum snake, along +z with its lowest line at y = 0."""
     return Rod.straight(
-        n, start=(0.0, RADIUS, 0.0), direction=(0.0, 0.0, 1.0), normal=(0.0, 1.0, 0.0), length=LENGTH, radius=RADIUS,
-        density=1000.0, youngs_modulus=1e6, shear_modulus=1e6 / 1.5, **material,
-    )  # fmt: skip
+        n,
+        start=(0.0, RADIUS, 0.0),
+        direction=(0.0, 0.0, 1.0),
+        normal=(0.0, 1.0, 0.0),
+        length=LENGTH,
+        radius=RADIUS,
+        density=1000.0,
+        youngs_modulus=1e6,
+        shear_modulus=1e6 / 1.5,
+        **material,
+    )
 
 
 def ground(static: float = 2.0, **options: float) -> Plane:
     """Return the snake's plane, with static friction ``static`` times the kinetic."""
     kinetic = (FRICTION, 1.5 * FRICTION, 2.0 * FRICTION)
     return Plane(
-        kinetic_friction=kinetic, static_friction=tuple(static * mu for mu in kinetic), stiffness=1.0, damping=1e-6,
+        kinetic_friction=kinetic,
+        static_friction=tuple(static * mu for mu in kinetic),
+        stiffness=1.0,
+        damping=1e-6,
         **options,
-    )  # fmt: skip
+    )
 
 
 def kinked(n: int = 40, **material: object) -> Rod:
@@ -62,9 +73,11 @@ def loop(n: int, *, size: float, gap: float, radius: float, **material: float) -
 ARMS_STEP = 4e-5
 """[s]"""
 ARMS_MUSCLES = Muscles(
-    magnitudes=dict.fromkeys(DIRECTIONS, (0.3, 0.2, 0.1)), widths=dict.fromkeys(DIRECTIONS, (0.40, 0.25, 0.15)),
-    arms=((0.4, 0.0), (0.6, 1.0)), activation_time=0.0,
-)  # fmt: skip
+    magnitudes=dict.fromkeys(DIRECTIONS, (0.3, 0.2, 0.1)),
+    widths=dict.fromkeys(DIRECTIONS, (0.40, 0.25, 0.15)),
+    arms=((0.4, 0.0), (0.6, 1.0)),
+    activation_time=0.0,
+)
 ARMS_CONTACT = Contact(stiffness=1e4, damping=5.0, friction=0.4, slip_damping=20.0)
 
 
@@ -80,9 +93,15 @@ def arms(n: int = 120) -> Rod:
     rest_kappa = np.zeros((3, n - 1))
     rest_kappa[0] = -np.diff(angle) * n
     return Rod(
-        position=nodes + np.array([[0.0], [0.03], [0.0]]), directors=directors, radius=np.full(n, 0.03),
-        rest_kappa=rest_kappa, density=1000.0, youngs_modulus=1e6, shear_modulus=1e6 / 1.5, damping_rate=5.0,
-    )  # fmt: skip
+        position=nodes + np.array([[0.0], [0.03], [0.0]]),
+        directors=directors,
+        radius=np.full(n, 0.03),
+        rest_kappa=rest_kappa,
+        density=1000.0,
+        youngs_modulus=1e6,
+        shear_modulus=1e6 / 1.5,
+        damping_rate=5.0,
+    )
 
 
 def held(height: float = 0.0) -> Cylinder:
@@ -91,9 +110,18 @@ def held(height: float = 0.0) -> Cylinder:
     middle, up = rod.n_elements // 2, np.array([0.0, 1.0, 0.0])
     inwards = np.cross(up, rod.directors[2, :, middle])
     x, _, z = rod.position[:, middle] - (0.03 + 0.05 - 5e-4) * inwards
-    return Cylinder(start=(x, height, z), direction=(0.0, 1.0, 0.0), normal=(1.0, 0.0, 0.0), length=0.6, radius=0.05,
-                    mass=4.0, rods=ARMS_CONTACT, ground_stiffness=1e4, ground_damping=20.0,
-                    ground_friction=0.4)  # fmt: skip
+    return Cylinder(
+        start=(x, height, z),
+        direction=(0.0, 1.0, 0.0),
+        normal=(1.0, 0.0, 0.0),
+        length=0.6,
+        radius=0.05,
+        mass=4.0,
+        rods=ARMS_CONTACT,
+        ground_stiffness=1e4,
+        ground_damping=20.0,
+        ground_friction=0.4,
+    )
 
 
 def motion(model: Model, state: State, env: int = 0, rod: int = 0) -> tuple[Array, Array, Array, Array]:
@@ -153,10 +181,11 @@ def energy(rod: Rod, model: Model, state: State, number: int = 0) -> float:
     sigma = np.einsum("ijk,jk->ik", Q, np.diff(x, axis=1)) / rod.rest_length - np.array([[0.0], [0.0], [1.0]])
     kappa = exact_rotation_vectors(Q).astype(np.float64) / rod.rest_voronoi_length
     return 0.5 * float(
-        (rod.nodal_mass * v * v).sum() + (rod.inertia * w * w / e).sum()
+        (rod.nodal_mass * v * v).sum()
+        + (rod.inertia * w * w / e).sum()
         + (rod.shear_stiffness * sigma * sigma * rod.rest_length).sum()
         + (rod.bend_stiffness * (kappa - rod.rest_kappa) ** 2 * rod.rest_voronoi_length).sum()
-    )  # fmt: skip
+    )
 
 
 def momenta(rod: Rod, model: Model, state: State) -> tuple[Array, Array]:

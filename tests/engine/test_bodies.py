@@ -12,18 +12,32 @@ DT = 1e-4
 LENGTH, RADIUS, MASS = 0.6, 0.05, 4.0
 # far from everything, for a model needs one
 BYSTANDER = Rod.straight(
-    2, start=(50.0, 50.0, 50.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=0.1, radius=0.01,
-    density=1000.0, youngs_modulus=1e3, shear_modulus=1e3,
-)  # fmt: skip
+    2,
+    start=(50.0, 50.0, 50.0),
+    direction=(1.0, 0.0, 0.0),
+    normal=(0.0, 1.0, 0.0),
+    length=0.1,
+    radius=0.01,
+    density=1000.0,
+    youngs_modulus=1e3,
+    shear_modulus=1e3,
+)
 
 
 def cylinder(**options: object) -> Cylinder:
     """Return the object, lying along +z on the plane y = 0."""
     given = dict(
-        start=(0.0, RADIUS, -0.5 * LENGTH), direction=(0.0, 0.0, 1.0), normal=(0.0, 1.0, 0.0), length=LENGTH,
-        radius=RADIUS, mass=MASS, rods=Contact(stiffness=1e3), ground_stiffness=1e5, ground_damping=300.0,
+        start=(0.0, RADIUS, -0.5 * LENGTH),
+        direction=(0.0, 0.0, 1.0),
+        normal=(0.0, 1.0, 0.0),
+        length=LENGTH,
+        radius=RADIUS,
+        mass=MASS,
+        rods=Contact(stiffness=1e3),
+        ground_stiffness=1e5,
+        ground_damping=300.0,
         ground_friction=0.4,
-    )  # fmt: skip
+    )
     return Cylinder(**{**given, **options})
 
 
@@ -124,11 +138,14 @@ def test_ground_never_pulls():
     assert state.body_force[0, 0, 1] == pytest.approx(-MASS * G)
 
 
-@pytest.mark.parametrize(("options", "message"), [
-    (dict(mass=0.0), "mass must be a positive number, not 0.0"),
-    (dict(ground_friction=-0.1), "ground_friction must be zero or a positive number, not -0.1"),
-    (dict(normal=(0.0, 0.0, 2.0)), "must be perpendicular to direction"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (dict(mass=0.0), "mass must be a positive number, not 0.0"),
+        (dict(ground_friction=-0.1), "ground_friction must be zero or a positive number, not -0.1"),
+        (dict(normal=(0.0, 0.0, 2.0)), "must be perpendicular to direction"),
+    ],
+)
 def test_impossible_cylinders_are_named(options, message):
     with pytest.raises(ValueError, match=message):
         cylinder(**options)

@@ -32,9 +32,13 @@ def copied(tmp_path):
 def start(folder, code, **variables):
     ours = {"PYTHONPATH": str(folder), "ELASTICA_GYM_CACHE_DIR": str(folder / "cache")}
     return subprocess.Popen(
-        [sys.executable, "-c", code], env={**os.environ, **ours, **variables}, cwd=folder, text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
+        [sys.executable, "-c", code],
+        env={**os.environ, **ours, **variables},
+        cwd=folder,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
 
 
 def run(folder, code=RUN, **variables):
@@ -96,9 +100,11 @@ def test_home_that_cannot_be_written(copied):
 
 def test_disk_that_is_full(copied):
     """Then the kernel works, and is not kept."""
-    code = ("import tempfile; from numba.core import caching\n"
-            "def full(*args): raise OSError(28, 'No space left on device')\n"
-            "caching.IndexDataCacheFile.save = full\n") + RUN  # fmt: skip
+    code = (
+        "import tempfile; from numba.core import caching\n"
+        "def full(*args): raise OSError(28, 'No space left on device')\n"
+        "caching.IndexDataCacheFile.save = full\n"
+    ) + RUN
     status, output, errors = run(copied, code)
     assert (status, output) == (0, "2.0")
     assert "not kept" in errors and "No space left" in errors

@@ -22,8 +22,9 @@ SOFT = dict(density=1000.0, youngs_modulus=1e-3, shear_modulus=1e-3)
 def straight(n: int, start: tuple, direction: tuple, **material: float) -> Rod:
     tangent = np.asarray(direction) / np.linalg.norm(direction)
     normal = np.cross(tangent, (0.3, 0.5, -0.8))
-    return Rod.straight(n, start=start, direction=direction, normal=normal, length=1.0, radius=0.02,
-                        **{**SOFT, **material})  # fmt: skip
+    return Rod.straight(
+        n, start=start, direction=direction, normal=normal, length=1.0, radius=0.02, **{**SOFT, **material}
+    )
 
 
 def knot() -> Rod:
@@ -32,8 +33,16 @@ def knot() -> Rod:
 
 
 def object_in_the_way(rods: Contact) -> Cylinder:
-    return Cylinder(start=(-0.1, 0.0, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=0.2, radius=0.05,
-                    mass=4.0, rods=rods, ground_stiffness=1e4)  # fmt: skip
+    return Cylinder(
+        start=(-0.1, 0.0, 0.0),
+        direction=(1.0, 0.0, 0.0),
+        normal=(0.0, 1.0, 0.0),
+        length=0.2,
+        radius=0.05,
+        mass=4.0,
+        rods=rods,
+        ground_stiffness=1e4,
+    )
 
 
 def nodes_of(model, rod: int) -> slice:
@@ -64,8 +73,13 @@ def elements(model, state, rod: int) -> tuple[Array, Array, Array, Array, Array]
     edge = np.diff(x, axis=1)
     length = np.linalg.norm(edge, axis=0)
     own = slice(where.start, where.stop - 1)
-    return (np.ascontiguousarray(x[:, :-1]), state.radius[0, own].copy(), length, edge / length,
-            np.ascontiguousarray(state.v[0][:, where]))  # fmt: skip
+    return (
+        np.ascontiguousarray(x[:, :-1]),
+        state.radius[0, own].copy(),
+        length,
+        edge / length,
+        np.ascontiguousarray(state.v[0][:, where]),
+    )
 
 
 def compare(ours: Array, theirs: Array) -> float:
@@ -99,11 +113,25 @@ def test_rod_on_cylinder_is_the_oracles(oracle, contact):
         force, body_force, body_torque = np.zeros((3, 22)), np.zeros((3, 1)), np.zeros((3, 1))
         # friction is of half a contact there, so its slip damping is half of ours
         oracle._calculate_contact_forces_rod_cylinder(
-            start, length * tangent, body.centre, body.centre - 0.5 * body.length * body.directors[2],
-            body.length * body.directors[2], radius + body.radius, length + body.length, force, force, body_force,
-            body_torque, np.ascontiguousarray(state.body_Q[0, 0]), velocity, state.body_v[0, 0][:, None].copy(),
-            K, NU, 0.5 * contact.slip_damping, contact.friction,
-        )  # fmt: skip
+            start,
+            length * tangent,
+            body.centre,
+            body.centre - 0.5 * body.length * body.directors[2],
+            body.length * body.directors[2],
+            radius + body.radius,
+            length + body.length,
+            force,
+            force,
+            body_force,
+            body_torque,
+            np.ascontiguousarray(state.body_Q[0, 0]),
+            velocity,
+            state.body_v[0, 0][:, None].copy(),
+            K,
+            NU,
+            0.5 * contact.slip_damping,
+            contact.friction,
+        )
         assert compare(ours, force) < 1e-11
         assert compare(state.body_force[0, 0], body_force[:, 0]) < 1e-11
         if contact is SMOOTH:
@@ -114,8 +142,10 @@ def test_rod_on_cylinder_is_the_oracles(oracle, contact):
 def end_to_end(model, state) -> list[Array]:
     """Return the first two rods as one, with a thin element far away between them."""
     far = (np.full((3, 1), 1e6), np.full(1, 1e-9), np.ones(1), np.eye(3)[:, :1], np.zeros((3, 0)))
-    return [np.concatenate(parts, axis=-1) for parts in zip(elements(model, state, 0), far, elements(model, state, 1),
-                                                            strict=True)]  # fmt: skip
+    return [
+        np.concatenate(parts, axis=-1)
+        for parts in zip(elements(model, state, 0), far, elements(model, state, 1), strict=True)
+    ]
 
 
 def test_rod_on_rod_is_the_oracles(oracle):

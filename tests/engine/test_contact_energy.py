@@ -43,8 +43,9 @@ def rod_across(ratio: float, place: float, direction: Array, centre: Array) -> R
     """Return a straight rod whose point ``place`` elements from its middle is at ``centre``."""
     length = N * ratio * R
     start, normal = centre - (0.5 + place / N) * length * direction, np.cross(direction, X + 2.0 * Y + Z)
-    return Rod.straight(N, start=tuple(start), direction=tuple(direction), normal=tuple(normal), length=length,
-                        radius=R, **MATERIAL)  # fmt: skip
+    return Rod.straight(
+        N, start=tuple(start), direction=tuple(direction), normal=tuple(normal), length=length, radius=R, **MATERIAL
+    )
 
 
 def collide(rods: list[Rod], velocities: list[Array], law: Contact, dt: float, cylinders=()) -> Collision:
@@ -94,8 +95,10 @@ several = settings(max_examples=15, deadline=None)
 @given(ratio=ratios, place=places, other=places, turn=st.floats(0.0, np.pi))
 @example(ratio=3.0, place=0.125, other=-0.625, turn=3.140625)
 def test_two_rods(ratio, place, other, turn):
-    rods = [rod_across(ratio, place, X, np.zeros(3)),
-            rod_across(ratio, other, np.array([np.cos(turn), 0.0, np.sin(turn)]), (2.0 * R + GAP) * Y)]  # fmt: skip
+    rods = [
+        rod_across(ratio, place, X, np.zeros(3)),
+        rod_across(ratio, other, np.array([np.cos(turn), 0.0, np.sin(turn)]), (2.0 * R + GAP) * Y),
+    ]
     law, dt = law_for(rods[0])
     require_kept(collide(rods, [np.zeros((3, 1)), -SPEED * Y[:, None]], law, dt))
 
@@ -119,8 +122,16 @@ def test_rod_and_cylinder(ratio, place, along, turn):
     axis = Z if abs(along) > 1.0 else np.array([np.cos(turn), 0.0, np.sin(turn)])
     beyond = max(abs(along) - 1.0, 0.0) * half
     centre = np.array([0.0, np.sqrt((R + r) ** 2 - beyond**2) + GAP, 0.0]) - along * half * axis
-    body = Cylinder(start=tuple(centre - half * axis), direction=tuple(axis), normal=(0.0, 1.0, 0.0), length=2.0 * half,
-                    radius=r, mass=20.0 * rods[0].nodal_mass[1], rods=law, ground_stiffness=1.0)  # fmt: skip
+    body = Cylinder(
+        start=tuple(centre - half * axis),
+        direction=tuple(axis),
+        normal=(0.0, 1.0, 0.0),
+        length=2.0 * half,
+        radius=r,
+        mass=20.0 * rods[0].nodal_mass[1],
+        rods=law,
+        ground_stiffness=1.0,
+    )
     require_kept(collide(rods, [SPEED * Y[:, None]], law, dt, [body]))
 
 
@@ -129,8 +140,9 @@ def test_rod_and_cylinder(ratio, place, along, turn):
 def test_rod_and_sphere(ratio, place):
     described = rod_across(ratio, place, X, np.zeros(3))
     law, dt = law_for(described)
-    rod = ea.CosseratRod.straight_rod(N, described.position[:, 0], X, Y, N * ratio * R, R, MATERIAL["density"],
-                                      youngs_modulus=3e5, shear_modulus=1e5)  # fmt: skip
+    rod = ea.CosseratRod.straight_rod(
+        N, described.position[:, 0], X, Y, N * ratio * R, R, MATERIAL["density"], youngs_modulus=3e5, shear_modulus=1e5
+    )
     ball, made = ea.Sphere((4.0 * R + GAP) * Y, 3.0 * R, 500.0), Simulator()
     for system in (rod, ball):
         made.append(system)
@@ -139,8 +151,12 @@ def test_rod_and_sphere(ratio, place):
     rod.velocity_collection[1] = SPEED
 
     def total() -> float:
-        of_rod = (rod.compute_translational_energy() + rod.compute_rotational_energy() + rod.compute_bending_energy()
-                  + rod.compute_shear_energy())  # fmt: skip
+        of_rod = (
+            rod.compute_translational_energy()
+            + rod.compute_rotational_energy()
+            + rod.compute_bending_energy()
+            + rod.compute_shear_energy()
+        )
         # that of a body is an array of one, as in PyElastica
         return float(of_rod + np.sum(ball.compute_translational_energy() + ball.compute_rotational_energy()))
 

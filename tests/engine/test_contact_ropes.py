@@ -24,9 +24,17 @@ def add_rope(sim: Simulator, nodes: Array, radius: float, damping: float) -> ea.
     edges = np.diff(nodes, axis=1)
     tangent = edges[:, 0] / np.linalg.norm(edges[:, 0])
     rope = ea.CosseratRod.straight_rod(
-        edges.shape[1], nodes[:, 0], tangent, np.cross(tangent, Y), float(np.linalg.norm(edges, axis=0).sum()), radius,
-        1000.0, youngs_modulus=YOUNG, shear_modulus=YOUNG / 3.0, position=nodes,
-    )  # fmt: skip
+        edges.shape[1],
+        nodes[:, 0],
+        tangent,
+        np.cross(tangent, Y),
+        float(np.linalg.norm(edges, axis=0).sum()),
+        radius,
+        1000.0,
+        youngs_modulus=YOUNG,
+        shear_modulus=YOUNG / 3.0,
+        position=nodes,
+    )
     sim.append(rope)
     sim.add_forcing_to(rope).using(ea.GravityForces, GRAVITY)
     dt = step_of(rope)
@@ -100,13 +108,29 @@ def slip_over_post(friction: float, wrap: float, ratio: float) -> float:
     nodes = np.array([-bend * np.cos(angle), bend * np.sin(angle), 0.0 * s])
     nodes += np.minimum(s, 0.0) * Y[:, None] + np.maximum(s - wrap * bend, 0.0) * along[:, None]
     ropes = [
-        Rod.through(nodes, normal=(0.0, 0.0, 1.0), radius=np.full(N, ROPE), density=1000.0, youngs_modulus=YOUNG,
-                    shear_modulus=YOUNG / 3.0, damping_rate=rate) for rate in (100.0, 0.0)
-    ]  # fmt: skip
+        Rod.through(
+            nodes,
+            normal=(0.0, 0.0, 1.0),
+            radius=np.full(N, ROPE),
+            density=1000.0,
+            youngs_modulus=YOUNG,
+            shear_modulus=YOUNG / 3.0,
+            damping_rate=rate,
+        )
+        for rate in (100.0, 0.0)
+    ]
     dt, m = 0.5 * stable_time_step(ropes[0]), ropes[0].nodal_mass[1]
     law = Contact(stiffness=0.1 * m / dt**2, damping=0.3 * m / dt, friction=friction, slip_damping=0.2 * m / dt)
-    post = Cylinder(start=(0.0, 0.0, -0.1), direction=(0.0, 0.0, 1.0), normal=(1.0, 0.0, 0.0), length=0.2, radius=POST,
-                    mass=1e6, rods=law, ground_stiffness=1.0)  # fmt: skip
+    post = Cylinder(
+        start=(0.0, 0.0, -0.1),
+        direction=(0.0, 0.0, 1.0),
+        normal=(1.0, 0.0, 0.0),
+        length=0.2,
+        radius=POST,
+        mass=1e6,
+        rods=law,
+        ground_stiffness=1.0,
+    )
     settling, free = (build_model([rope], cylinders=[post], is_loaded=True) for rope in ropes)
     state, control = at_rest(settling, ropes[:1], cylinders=[post])
     first = int(settling.first_slot[0])
@@ -145,8 +169,11 @@ def test_a_pile_of_ropes_comes_to_rest(stiffness, damping):
         turn = rng.uniform(0.0, np.pi)
         direction = np.array([np.cos(turn), 0.02 * rng.standard_normal(), np.sin(turn)])
         centre = 0.01 * rng.standard_normal(3) * (X + Z) + (0.01 + 2.2 * radius * number) * Y
-        ropes.append(add_rope(sim, centre[:, None] + length * direction[:, None] * np.linspace(-0.5, 0.5, n + 1),
-                              radius, damping=10.0))  # fmt: skip
+        ropes.append(
+            add_rope(
+                sim, centre[:, None] + length * direction[:, None] * np.linspace(-0.5, 0.5, n + 1), radius, damping=10.0
+            )
+        )
     ground = ea.Plane(np.zeros(3), Y)
     sim.append(ground)
     dt, m = step_of(ropes[0]), ropes[0].mass[1]

@@ -17,9 +17,12 @@ SOFT = dict(density=1000.0, youngs_modulus=1e-3, shear_modulus=1e-3)
 
 seeds = st.integers(0, 2**32 - 1)
 laws = st.builds(
-    Contact, stiffness=st.floats(1.0, 1e5), damping=st.floats(0.0, 100.0), friction=st.floats(0.0, 2.0),
+    Contact,
+    stiffness=st.floats(1.0, 1e5),
+    damping=st.floats(0.0, 100.0),
+    friction=st.floats(0.0, 2.0),
     slip_damping=st.floats(0.0, 100.0),
-)  # fmt: skip
+)
 many = settings(max_examples=100, deadline=None)
 
 
@@ -39,8 +42,16 @@ def rod_through(point: Array, rng: np.random.Generator, n: int = 12, radius: flo
 def cylinder_through(point: Array, law: Contact, rng: np.random.Generator) -> Cylinder:
     along = direction(rng)
     start = point - rng.uniform(-0.1, 1.1) * 0.3 * along
-    return Cylinder(start=tuple(start), direction=tuple(along), normal=tuple(np.cross(along, direction(rng))),
-                    length=0.3, radius=0.04, mass=0.7, rods=law, ground_stiffness=1e4)  # fmt: skip
+    return Cylinder(
+        start=tuple(start),
+        direction=tuple(along),
+        normal=tuple(np.cross(along, direction(rng))),
+        length=0.3,
+        radius=0.04,
+        mass=0.7,
+        rods=law,
+        ground_stiffness=1e4,
+    )
 
 
 def contact_loads(model: Model, state: State, control) -> tuple[Array, Array, float]:
@@ -122,9 +133,18 @@ def test_a_rod_acts_and_reacts_on_itself(seed, law, gap):
 def test_what_the_ground_does_to_a_cylinder_is_within_coulombs_cone(seed, friction, damping):
     rng = np.random.default_rng(seed)
     along = direction(rng)
-    body = Cylinder(start=(0.0, rng.uniform(-0.02, 0.05), 0.0), direction=tuple(along), length=0.3, radius=0.05,
-                    normal=tuple(np.cross(along, direction(rng))), mass=0.7, rods=Contact(stiffness=1.0),
-                    ground_stiffness=1e4, ground_damping=damping, ground_friction=friction)  # fmt: skip
+    body = Cylinder(
+        start=(0.0, rng.uniform(-0.02, 0.05), 0.0),
+        direction=tuple(along),
+        length=0.3,
+        radius=0.05,
+        normal=tuple(np.cross(along, direction(rng))),
+        mass=0.7,
+        rods=Contact(stiffness=1.0),
+        ground_stiffness=1e4,
+        ground_damping=damping,
+        ground_friction=friction,
+    )
     rods = [rod_through(np.full(3, 9.0), rng)]
     model = build_model(rods, planes=[Plane()], cylinders=[body])
     state, control = at_rest(model, rods, cylinders=[body])
@@ -163,10 +183,27 @@ def momenta(model: Model, state: State) -> tuple[Array, Array]:
 def collide(dt: float) -> tuple[Array, Array, float]:
     """Return by how much momentum and angular momentum change as an arm strikes a free cylinder, and how hard."""
     law = Contact(stiffness=1e4, damping=2.0, friction=0.4, slip_damping=5.0)
-    arm = Rod.straight(20, start=(-0.2, 0.1, -0.4), direction=(0.4, 0.0, 0.8), normal=(0.0, 1.0, 0.0), length=0.4,
-                       radius=0.025, density=1000.0, youngs_modulus=1e5, shear_modulus=4e4)  # fmt: skip
-    body = Cylinder(start=(-0.1, 0.0, -0.1), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=0.3,
-                    radius=0.05, mass=0.5, rods=law, ground_stiffness=1e4)  # fmt: skip
+    arm = Rod.straight(
+        20,
+        start=(-0.2, 0.1, -0.4),
+        direction=(0.4, 0.0, 0.8),
+        normal=(0.0, 1.0, 0.0),
+        length=0.4,
+        radius=0.025,
+        density=1000.0,
+        youngs_modulus=1e5,
+        shear_modulus=4e4,
+    )
+    body = Cylinder(
+        start=(-0.1, 0.0, -0.1),
+        direction=(1.0, 0.0, 0.0),
+        normal=(0.0, 1.0, 0.0),
+        length=0.3,
+        radius=0.05,
+        mass=0.5,
+        rods=law,
+        ground_stiffness=1e4,
+    )
     model = build_model([arm], cylinders=[body], is_balanced=True)
     state, control = at_rest(model, [arm], cylinders=[body])
     motion(model, state)[1][:] = np.array([[0.3], [-1.0], [0.2]])
@@ -241,8 +278,10 @@ def test_more_pairs_than_there_is_room_for():
     rod = coil(80)
     model = build_model([rod], rod_contact=Contact(stiffness=50.0))
     state, control = at_rest(model, [rod])
-    cramped = state._replace(pairs=aligned_zeros((1, 4), np.int64), **{
-        name: getattr(state, name).copy() for name in State._fields if name != "pairs"})  # fmt: skip
+    cramped = state._replace(
+        pairs=aligned_zeros((1, 4), np.int64),
+        **{name: getattr(state, name).copy() for name in State._fields if name != "pairs"},
+    )
     for each in (state, cramped):
         each.v[0, 2] = np.linspace(1.0, -1.0, state.v.shape[2])
         advance(model, each, control, 0, 1, 1e-5, 2000)

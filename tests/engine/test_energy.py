@@ -13,9 +13,17 @@ GRAVITY = (0.0, -9.81, 0.0)
 
 def arm(height: float = 0.0, **material: float) -> Rod:
     return Rod.straight(
-        N, start=(0.0, height, 0.0), direction=(1.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0), length=0.4, radius=0.03,
-        density=1000.0, youngs_modulus=1e6, shear_modulus=1e6 / 1.5, **material,
-    )  # fmt: skip
+        N,
+        start=(0.0, height, 0.0),
+        direction=(1.0, 0.0, 0.0),
+        normal=(0.0, 1.0, 0.0),
+        length=0.4,
+        radius=0.03,
+        density=1000.0,
+        youngs_modulus=1e6,
+        shear_modulus=1e6 / 1.5,
+        **material,
+    )
 
 
 def coiling(model, rod: Rod, cylinders=()) -> tuple:
@@ -28,13 +36,34 @@ def coiling(model, rod: Rod, cylinders=()) -> tuple:
 
 def test_changes_of_energy_are_the_sum_of_works():
     rod = arm(height=0.028, damping_rate=2.0, torque_viscosity=0.05)
-    ground = Plane(stiffness=1e4, damping=10.0, kinetic_friction=(0.4, 0.6, 0.8), static_friction=(0.8, 1.2, 1.6),
-                   slip_tolerance=1e-3)  # fmt: skip
-    post = Cylinder(start=(0.2, 0.0, 0.075), direction=(0.0, 1.0, 0.0), normal=(1.0, 0.0, 0.0), length=0.3, radius=0.05,
-                    mass=1.0, rods=Contact(stiffness=1e4, damping=5.0, friction=0.4, slip_damping=5.0),
-                    ground_stiffness=1e4, ground_damping=20.0, ground_friction=0.4)  # fmt: skip
-    model = build_model([rod], planes=[ground], cylinders=[post], gravity=GRAVITY, activation_time=0.05,
-                        is_balanced=True, is_reciprocal=True)  # fmt: skip
+    ground = Plane(
+        stiffness=1e4,
+        damping=10.0,
+        kinetic_friction=(0.4, 0.6, 0.8),
+        static_friction=(0.8, 1.2, 1.6),
+        slip_tolerance=1e-3,
+    )
+    post = Cylinder(
+        start=(0.2, 0.0, 0.075),
+        direction=(0.0, 1.0, 0.0),
+        normal=(1.0, 0.0, 0.0),
+        length=0.3,
+        radius=0.05,
+        mass=1.0,
+        rods=Contact(stiffness=1e4, damping=5.0, friction=0.4, slip_damping=5.0),
+        ground_stiffness=1e4,
+        ground_damping=20.0,
+        ground_friction=0.4,
+    )
+    model = build_model(
+        [rod],
+        planes=[ground],
+        cylinders=[post],
+        gravity=GRAVITY,
+        activation_time=0.05,
+        is_balanced=True,
+        is_reciprocal=True,
+    )
     state, control = coiling(model, rod, [post])
     ledger = Ledger(model, state, control)
     ledger.advance(1, 0.2 * stable_time_step(rod), 2000)

@@ -43,10 +43,16 @@ def test_rod_needs_two_elements(n):
     refused(lambda: Rod.straight(n, **STRAIGHT), "n_elements", n)
 
 
-@pytest.mark.parametrize(("name", "value"), [
-    ("direction", (0, 0, 0)), ("normal", (0, 0, 0)), ("normal", (0, 0, 2)), ("start", (0, 0)),
-    ("start", (0, np.nan, 0)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("direction", (0, 0, 0)),
+        ("normal", (0, 0, 0)),
+        ("normal", (0, 0, 2)),
+        ("start", (0, 0)),
+        ("start", (0, np.nan, 0)),
+    ],
+)
 def test_rod_needs_a_place_and_directions(name, value):
     refused(lambda: Rod.straight(4, **{**STRAIGHT, name: value}), name)
 
@@ -55,11 +61,17 @@ def test_rod_checks_shapes_and_directors():
     rod = snake(4)
     given_ = dict(position=rod.position, directors=rod.directors, radius=rod.radius, **MATERIAL)
     for name, value in (
-        ("position", np.zeros((3, 2))), ("position", np.zeros((2, 5))), ("element length", np.zeros((3, 5))),
-        ("directors", np.zeros((3, 3, 4))), ("directors", -rod.directors), ("directors", rod.directors[:, :, :3]),
-        ("rest_kappa", np.zeros((3, 4))), ("rest_sigma", np.full((3, 4), np.nan)), ("radius", np.full(3, 0.1)),
+        ("position", np.zeros((3, 2))),
+        ("position", np.zeros((2, 5))),
+        ("element length", np.zeros((3, 5))),
+        ("directors", np.zeros((3, 3, 4))),
+        ("directors", -rod.directors),
+        ("directors", rod.directors[:, :, :3]),
+        ("rest_kappa", np.zeros((3, 4))),
+        ("rest_sigma", np.full((3, 4), np.nan)),
+        ("radius", np.full(3, 0.1)),
         ("radius", np.array([0.1, 0.1, -0.1, 0.1])),
-    ):  # fmt: skip
+    ):
         argument = "position" if name == "element length" else name
         refused(lambda argument=argument, value=value: Rod(**{**given_, argument: value}), name)
 
@@ -76,10 +88,17 @@ def test_friction_is_not_negative(name, place, value):
     refused(lambda: Plane(**{name: tuple(coefficients)}), name, value)
 
 
-@pytest.mark.parametrize(("name", "value"), [
-    ("normal", (0, 0, 0)), ("normal", (0, np.nan, 0)), ("origin", (0, np.inf, 0)), ("origin", (0, 0)),
-    ("kinetic_friction", (0.1, 0.1)), ("slip_tolerance", 0.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("normal", (0, 0, 0)),
+        ("normal", (0, np.nan, 0)),
+        ("origin", (0, np.inf, 0)),
+        ("origin", (0, 0)),
+        ("kinetic_friction", (0.1, 0.1)),
+        ("slip_tolerance", 0.0),
+    ],
+)
 def test_plane_needs_a_place(name, value):
     refused(lambda: Plane(**{name: value}), name)
 
@@ -90,10 +109,18 @@ def test_wave_times(name, value):
     refused(lambda: Wave(**{**given_, name: value}), name, value)
 
 
-@pytest.mark.parametrize(("name", "value"), [
-    ("coefficients", (1.0, 1.0, 1.0)), ("coefficients", (1.0, 1.0, 1.0, np.nan)), ("wave_number", np.nan),
-    ("phase", np.inf), ("axis", (0, 1)), ("axis", (0, np.nan, 1)), ("period", 0.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("coefficients", (1.0, 1.0, 1.0)),
+        ("coefficients", (1.0, 1.0, 1.0, np.nan)),
+        ("wave_number", np.nan),
+        ("phase", np.inf),
+        ("axis", (0, 1)),
+        ("axis", (0, np.nan, 1)),
+        ("period", 0.0),
+    ],
+)
 def test_wave_needs_finite_numbers(name, value):
     given_ = dict(coefficients=(1.0, 1.0, 1.0, 1.0), period=1.0, wave_number=1.0)
     refused(lambda: Wave(**{**given_, name: value}), name)
@@ -105,8 +132,10 @@ def test_model_needs_rods_and_loads_that_can_be():
     refused(lambda: build_model([rod], gravity=(0, 1)), "gravity")
     refused(lambda: build_model([rod], gravity=(0, np.nan, 0)), "gravity")
     refused(lambda: build_model([rod], activation_time=-1.0), "activation_time", -1.0)
-    refused(lambda: build_model([rod], waves=[Wave(coefficients=WAVE.coefficients, period=1, wave_number=1, rod=1)]),
-            "rod 1")  # fmt: skip
+    refused(
+        lambda: build_model([rod], waves=[Wave(coefficients=WAVE.coefficients, period=1, wave_number=1, rod=1)]),
+        "rod 1",
+    )
 
 
 def test_time_step_above_the_stable_one():

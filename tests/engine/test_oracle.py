@@ -12,24 +12,37 @@ oracle = pytest.importorskip("tests.engine.oracle", reason="pip install 'elastic
 
 KINETIC = Plane(kinetic_friction=(FRICTION, 1.5 * FRICTION, 2.0 * FRICTION))
 RESPONSE = Plane(stiffness=10.0, damping=0.01)
-TILTED = Plane(origin=(0.0, 1e-4, 0.0), normal=(0.1, 0.97, -0.2), stiffness=3.0, damping=1e-3, slip_tolerance=0.05,
-               kinetic_friction=(0.3, 0.4, 0.5), static_friction=(0.6, 0.5, 0.9))  # fmt: skip
+TILTED = Plane(
+    origin=(0.0, 1e-4, 0.0),
+    normal=(0.1, 0.97, -0.2),
+    stiffness=3.0,
+    damping=1e-3,
+    slip_tolerance=0.05,
+    kinetic_friction=(0.3, 0.4, 0.5),
+    static_friction=(0.6, 0.5, 0.9),
+)
 LOADS = {
     "none": {},
     "gravity": dict(gravity=GRAVITY),
     "wave": dict(waves=[WAVE]),
-    "wave without ramp": dict(waves=[Wave(coefficients=(1e-3, 2e-3, 1e-3, 3e-3), period=0.7, wave_number=4.0, phase=0.3,
-                                          axis=(0.3, 0.4, -0.2))]),
+    "wave without ramp": dict(
+        waves=[
+            Wave(coefficients=(1e-3, 2e-3, 1e-3, 3e-3), period=0.7, wave_number=4.0, phase=0.3, axis=(0.3, 0.4, -0.2))
+        ]
+    ),
     "response": dict(gravity=GRAVITY, planes=[RESPONSE]),
     "kinetic": dict(gravity=GRAVITY, planes=[KINETIC]),
     "slow, static": dict(gravity=GRAVITY, planes=[ground(slip_tolerance=0.05)]),
     "tilted plane": dict(gravity=GRAVITY, planes=[TILTED]),
     "all": dict(gravity=GRAVITY, planes=[ground()], waves=[WAVE]),
-}  # fmt: skip
+}
 
 
-@pytest.mark.parametrize("rod", [snake(), snake(damping_rate=10.0), kinked(), kinked(rest_kappa=np.zeros((3, 39)))],
-                         ids=["snake", "damped", "kinked", "straightening"])  # fmt: skip
+@pytest.mark.parametrize(
+    "rod",
+    [snake(), snake(damping_rate=10.0), kinked(), kinked(rest_kappa=np.zeros((3, 39)))],
+    ids=["snake", "damped", "kinked", "straightening"],
+)
 def test_trajectory_without_friction(rod):
     model, state, control, twin = oracle.both([rod], TIME_STEP, gravity=GRAVITY, waves=[WAVE])
     advance(model, state, control, 0, 1, TIME_STEP, 2000)
@@ -65,8 +78,16 @@ ARM = dict(density=1000.0, youngs_modulus=2e4, shear_modulus=8e3, radius=0.025, 
 LAW = Contact(stiffness=2e3, damping=2.0, friction=0.4, slip_damping=3.0)
 SMOOTH = Contact(stiffness=2e3, damping=2.0)
 STEP = 4e-5
-OBJECT = Cylinder(start=(-0.02, 0.08, 0.02), direction=(0.1, 1.0, 0.2), normal=(1.0, -0.1, 0.0), length=0.3,
-                  radius=0.05, mass=2.0, rods=LAW, ground_stiffness=1e4)  # fmt: skip
+OBJECT = Cylinder(
+    start=(-0.02, 0.08, 0.02),
+    direction=(0.1, 1.0, 0.2),
+    normal=(1.0, -0.1, 0.0),
+    length=0.3,
+    radius=0.05,
+    mass=2.0,
+    rods=LAW,
+    ground_stiffness=1e4,
+)
 
 
 def arm(n: int, start: tuple, direction: tuple) -> Rod:
@@ -76,12 +97,16 @@ def arm(n: int, start: tuple, direction: tuple) -> Rod:
 
 SCENES = {
     "rod and cylinder": ([arm(16, (-0.25, 0.15, 0.037), (1.0, 0.1, 0.3))], dict(cylinders=[OBJECT])),
-    "on the ground": ([arm(16, (-0.25, 0.0245, 0.034), (1.0, 0.0, 0.1))],
-                      dict(cylinders=[OBJECT], planes=[TILTED], gravity=GRAVITY)),
-    "two rods": ([arm(12, (-0.25, 0.0, 0.0), (1.0, 0.0, 0.0)), arm(10, (-0.1, 0.047, -0.2), (0.5, 0.0, 0.9))],
-                 dict(rod_contact=SMOOTH)),
+    "on the ground": (
+        [arm(16, (-0.25, 0.0245, 0.034), (1.0, 0.0, 0.1))],
+        dict(cylinders=[OBJECT], planes=[TILTED], gravity=GRAVITY),
+    ),
+    "two rods": (
+        [arm(12, (-0.25, 0.0, 0.0), (1.0, 0.0, 0.0)), arm(10, (-0.1, 0.047, -0.2), (0.5, 0.0, 0.9))],
+        dict(rod_contact=SMOOTH),
+    ),
     "self contact": ([loop(40, size=0.3, gap=0.047, **ARM)], dict(rod_contact=SMOOTH)),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("rods", "loads"), SCENES.values(), ids=SCENES.keys())

@@ -20,9 +20,17 @@ LARGEST = 5e-3
 
 def arm(start: tuple, direction: tuple, normal: tuple) -> Rod:
     return Rod.straight(
-        N, start=start, direction=direction, normal=normal, length=LENGTH, radius=np.linspace(BASE, TIP, N),
-        density=1000.0, youngs_modulus=1e6, shear_modulus=1e6 / 1.5, damping_rate=5.0,
-    )  # fmt: skip
+        N,
+        start=start,
+        direction=direction,
+        normal=normal,
+        length=LENGTH,
+        radius=np.linspace(BASE, TIP, N),
+        density=1000.0,
+        youngs_modulus=1e6,
+        shear_modulus=1e6 / 1.5,
+        damping_rate=5.0,
+    )
 
 
 def segments(model: Model, state: State, rod: int) -> tuple[Array, Array, Array, Array]:
@@ -68,10 +76,19 @@ def with_ground(model: Model, state: State) -> float:
     return float((r - a[:, 1] - 0.5 * e[:, 1]).max())
 
 
-GROUND = Plane(stiffness=1e4, damping=10.0, kinetic_friction=(0.5, 0.5, 0.5), static_friction=(0.5, 0.5, 0.5),
-               slip_tolerance=1e-3)  # fmt: skip
-OBJECT = Cylinder(start=(0.2, -0.3, 0.078), direction=(0.0, 1.0, 0.0), normal=(1.0, 0.0, 0.0), length=0.6, radius=0.05,
-                  mass=4.0, rods=LAW, ground_stiffness=1e5)  # fmt: skip
+GROUND = Plane(
+    stiffness=1e4, damping=10.0, kinetic_friction=(0.5, 0.5, 0.5), static_friction=(0.5, 0.5, 0.5), slip_tolerance=1e-3
+)
+OBJECT = Cylinder(
+    start=(0.2, -0.3, 0.078),
+    direction=(0.0, 1.0, 0.0),
+    normal=(1.0, 0.0, 0.0),
+    length=0.6,
+    radius=0.05,
+    mass=4.0,
+    rods=LAW,
+    ground_stiffness=1e5,
+)
 ALONG = arm((0.0, 0.03, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 ACROSS = arm((0.2, -0.2, 0.057), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
 CASES = {
@@ -79,7 +96,7 @@ CASES = {
     "another arm": ([ALONG, ACROSS], dict(rod_contact=LAW), 0, among_rods),
     "object": ([ALONG], dict(cylinders=[OBJECT]), 0, with_object),
     "ground": ([ALONG], dict(planes=[GROUND], gravity=GRAVITY), 1, with_ground),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -42,10 +42,16 @@ class Shape(NamedTuple):
 
 
 shapes = st.builds(
-    Shape, n=st.integers(3, 24), taper=st.floats(0.3, 1.0), slenderness=st.floats(0.1, 1.0),
-    young=st.sampled_from([1e4, 1e6, 1e8]), ratio=st.floats(0.33, 1.0), density=st.floats(300.0, 3000.0),
-    speed=st.floats(1e-6, 1e-3), seed=st.integers(0, 2**32 - 1),
-)  # fmt: skip
+    Shape,
+    n=st.integers(3, 24),
+    taper=st.floats(0.3, 1.0),
+    slenderness=st.floats(0.1, 1.0),
+    young=st.sampled_from([1e4, 1e6, 1e8]),
+    ratio=st.floats(0.33, 1.0),
+    density=st.floats(300.0, 3000.0),
+    speed=st.floats(1e-6, 1e-3),
+    seed=st.integers(0, 2**32 - 1),
+)
 
 
 def described(shape: Shape, is_planar: bool = False) -> Rod:
@@ -56,19 +62,33 @@ def described(shape: Shape, is_planar: bool = False) -> Rod:
     edges = LENGTH / shape.n * np.stack([np.sin(a), np.cos(a) * np.sin(b), np.cos(a) * np.cos(b)])
     radius = shape.slenderness * LENGTH / shape.n * np.linspace(1.0, shape.taper, shape.n)
     rod = Rod.through(
-        np.cumsum(np.concatenate([np.zeros((3, 1)), edges], axis=1), axis=1), normal=X, radius=radius,
-        density=shape.density, youngs_modulus=shape.young, shear_modulus=shape.ratio * shape.young,
-    )  # fmt: skip
+        np.cumsum(np.concatenate([np.zeros((3, 1)), edges], axis=1), axis=1),
+        normal=X,
+        radius=radius,
+        density=shape.density,
+        youngs_modulus=shape.young,
+        shear_modulus=shape.ratio * shape.young,
+    )
     return replace(rod, rest_kappa=rod.curvature)
 
 
 def documented(rod: Rod, **options: float) -> ea.CosseratRod:
     """Return the same rod of the documented library."""
     return ea.CosseratRod.straight_rod(
-        rod.n_elements, rod.position[:, 0], Z, X, LENGTH, rod.radius, rod.density, youngs_modulus=rod.youngs_modulus,
-        shear_modulus=rod.shear_modulus, position=rod.position, directors=rod.directors, rest_kappa=rod.rest_kappa,
+        rod.n_elements,
+        rod.position[:, 0],
+        Z,
+        X,
+        LENGTH,
+        rod.radius,
+        rod.density,
+        youngs_modulus=rod.youngs_modulus,
+        shear_modulus=rod.shear_modulus,
+        position=rod.position,
+        directors=rod.directors,
+        rest_kappa=rod.rest_kappa,
         **options,
-    )  # fmt: skip
+    )
 
 
 def velocities(shape: Shape, is_planar: bool = False) -> tuple[Array, Array]:
@@ -130,10 +150,14 @@ def dampers(rod: ea.CosseratRod, rate: float) -> dict[str, dict[str, float]]:
     """Return the arguments of each kind of damper that slows nodes about as fast as given [1/s]."""
     inertia = rod.mass_second_moment_of_inertia[0, 0].mean()
     return {
-        "none": {}, "nu": {}, "uniform": dict(uniform_damping_constant=rate), "deprecated": dict(damping_constant=rate),
-        "physical": dict(translational_damping_constant=rate * rod.mass.mean(),
-                         rotational_damping_constant=rate * inertia),
-    }  # fmt: skip
+        "none": {},
+        "nu": {},
+        "uniform": dict(uniform_damping_constant=rate),
+        "deprecated": dict(damping_constant=rate),
+        "physical": dict(
+            translational_damping_constant=rate * rod.mass.mean(), rotational_damping_constant=rate * inertia
+        ),
+    }
 
 
 def pair_in_a_field(shape: Shape, damper: str, is_joint_damped: bool) -> tuple[Simulator, list, Callable]:
@@ -160,8 +184,13 @@ def pair_in_a_field(shape: Shape, damper: str, is_joint_damped: bool) -> tuple[S
     made.finalize()
 
     def energies() -> tuple[float, float]:
-        own = sum(rod.compute_translational_energy() + rod.compute_rotational_energy() + rod.compute_shear_energy()
-                  + rod.compute_bending_energy() for rod in rods)  # fmt: skip
+        own = sum(
+            rod.compute_translational_energy()
+            + rod.compute_rotational_energy()
+            + rod.compute_shear_energy()
+            + rod.compute_bending_energy()
+            for rod in rods
+        )
         gap = rods[0].position_collection[:, -1] - rods[1].position_collection[:, -1]
         work = sum(float(gravity @ (rod.mass * rod.position_collection).sum(axis=1)) for rod in rods)
         work += float(pull @ rods[1].position_collection[:, -1])
@@ -171,8 +200,12 @@ def pair_in_a_field(shape: Shape, damper: str, is_joint_damped: bool) -> tuple[S
 
 
 @settings(few, max_examples=40)
-@given(shape=shapes, part=STEPS, damper=st.sampled_from(["none", "nu", "uniform", "deprecated", "physical"]),
-       is_joint_damped=st.booleans())  # fmt: skip
+@given(
+    shape=shapes,
+    part=STEPS,
+    damper=st.sampled_from(["none", "nu", "uniform", "deprecated", "physical"]),
+    is_joint_damped=st.booleans(),
+)
 def test_energy_does_not_grow_without_work(shape, part, damper, is_joint_damped):
     made, rods, energies = pair_in_a_field(shape, damper, is_joint_damped)
     start, size = energies()
@@ -261,9 +294,12 @@ def require_balance(systems: tuple, loads: list[tuple[Array, Array]], has_levers
     """Require that forces add up to nothing, and so do torques; with those of forces about the origin if they act."""
     forces = np.concatenate([force for force, _ in loads], axis=1)
     torques = np.concatenate(
-        [np.einsum("jik,jk->ik", each.director_collection, torque)
-         for each, (_, torque) in zip(systems, loads, strict=True)], axis=1,
-    )  # fmt: skip
+        [
+            np.einsum("jik,jk->ik", each.director_collection, torque)
+            for each, (_, torque) in zip(systems, loads, strict=True)
+        ],
+        axis=1,
+    )
     assert np.abs(forces).max() + np.abs(torques).max() > 0.0
     assert np.abs(forces.sum(axis=1)).max() <= 1e-12 * np.abs(forces).sum()
     if has_levers:
@@ -286,8 +322,12 @@ def connect(made: Simulator, systems: list, joint: str, *indices: int) -> None:
 
 
 @few
-@given(shape=shapes, joint=st.sampled_from(["free", "hinge", "fixed"]), is_body=st.booleans(),
-       ends=st.tuples(st.integers(0, 2), st.integers(0, 2)))  # fmt: skip
+@given(
+    shape=shapes,
+    joint=st.sampled_from(["free", "hinge", "fixed"]),
+    is_body=st.booleans(),
+    ends=st.tuples(st.integers(0, 2), st.integers(0, 2)),
+)
 def test_joints_act_and_react(shape, joint, is_body, ends):
     rod = moved(documented(described(shape)), shape)
     if is_body:
@@ -312,11 +352,15 @@ def overlapping(shape: Shape, kind: str) -> tuple[ea.CosseratRod, object, type]:
     if kind == "sphere":
         return rod, ea.Sphere(point, 2.0 * r, 500.0), ea.RodSphereContact
     if kind == "cylinder":
-        return rod, ea.Cylinder(point - 3.0 * r * along, along, normal, 8.0 * r * np.linalg.norm(along), r,
-                                500.0), ea.RodCylinderContact  # fmt: skip
+        return (
+            rod,
+            ea.Cylinder(point - 3.0 * r * along, along, normal, 8.0 * r * np.linalg.norm(along), r, 500.0),
+            ea.RodCylinderContact,
+        )
     along *= 0.5 * LENGTH / np.linalg.norm(along)
-    other = ea.CosseratRod.straight_rod(7, point - along, along, normal, LENGTH, r, shape.density,
-                                        youngs_modulus=shape.young)  # fmt: skip
+    other = ea.CosseratRod.straight_rod(
+        7, point - along, along, normal, LENGTH, r, shape.density, youngs_modulus=shape.young
+    )
     return rod, other, ea.RodRodContact
 
 
@@ -348,8 +392,11 @@ class Frame(NamedTuple):
         return self.vector(value) + self.shift
 
     def rod(self, rod: Rod) -> Rod:
-        return replace(rod, position=self.turn @ rod.position + self.shift[:, None],
-                       directors=np.einsum("ijk,lj->ilk", rod.directors, self.turn))  # fmt: skip
+        return replace(
+            rod,
+            position=self.turn @ rod.position + self.shift[:, None],
+            directors=np.einsum("ijk,lj->ilk", rod.directors, self.turn),
+        )
 
     def back(self, points: Array) -> Array:
         return self.turn.T @ (points - self.shift[:, None])
@@ -367,20 +414,31 @@ def add_loads(made: Simulator, rods: list, at: Frame, features: set[str]) -> Non
         made.add_forcing_to(second).using(ea.EndpointForces, *forces)
     if "muscle" in features:
         made.add_forcing_to(first).using(
-            ea.MuscleTorques, base_length=LENGTH, b_coeff=1e-3 * strength * first.radius.min() * np.array([1, 2, 2, 1]),
-            period=1e-2, wave_number=6.0, phase_shift=0.5, direction=at.vector([0.2, 0.9, -0.1]),
-            rest_lengths=first.rest_lengths, with_spline=True,
-        )  # fmt: skip
+            ea.MuscleTorques,
+            base_length=LENGTH,
+            b_coeff=1e-3 * strength * first.radius.min() * np.array([1, 2, 2, 1]),
+            period=1e-2,
+            wave_number=6.0,
+            phase_shift=0.5,
+            direction=at.vector([0.2, 0.9, -0.1]),
+            rest_lengths=first.rest_lengths,
+            with_spline=True,
+        )
     if "uniform" in features:
         made.add_forcing_to(second).using(ea.UniformTorques, 1e-4 * strength, at.vector(Y))
     if "fluid" in features:
         made.add_forcing_to(first).using(ea.SlenderBodyTheory, 0.1)
     if "plane" in features:
         made.add_forcing_to(first).using(
-            ea.AnisotropicFrictionalPlane, k=1e-3 * strength / LENGTH, nu=1e-6, plane_origin=at.point(np.zeros(3)),
-            plane_normal=at.vector(Y), slip_velocity_tol=1e-4, static_mu_array=np.array([0.2, 0.3, 0.4]),
+            ea.AnisotropicFrictionalPlane,
+            k=1e-3 * strength / LENGTH,
+            nu=1e-6,
+            plane_origin=at.point(np.zeros(3)),
+            plane_normal=at.vector(Y),
+            slip_velocity_tol=1e-4,
+            static_mu_array=np.array([0.2, 0.3, 0.4]),
             kinetic_mu_array=np.array([0.1, 0.15, 0.2]),
-        )  # fmt: skip
+        )
 
 
 def scene(shape: Shape, at: Frame, features: set[str]) -> tuple[Simulator, tuple]:
@@ -393,8 +451,9 @@ def scene(shape: Shape, at: Frame, features: set[str]) -> tuple[Simulator, tuple
         rod.velocity_collection = at.turn @ v
     middle, r = own[0].position[:, shape.n // 2], float(own[0].radius.min())
     start = middle - r * np.array([1.8, 0.1, 1.0])
-    body = ea.Cylinder(at.point(start), at.vector([0.1, 1.0, 0.2]), at.vector([0.0, 0.2, -1.0]), 3.0 * r, r,
-                       shape.density)  # fmt: skip
+    body = ea.Cylinder(
+        at.point(start), at.vector([0.1, 1.0, 0.2]), at.vector([0.0, 0.2, -1.0]), 3.0 * r, r, shape.density
+    )
     body.velocity_collection[:, 0] = at.vector([0.1, 0.0, 0.02])
     made = simulator(*rods, body)
     add_loads(made, rods, at, features)
@@ -416,8 +475,19 @@ def scene(shape: Shape, at: Frame, features: set[str]) -> tuple[Simulator, tuple
     return made, (*rods, body)
 
 
-FEATURES = ["gravity", "pull", "muscle", "uniform", "fluid", "plane", "clamp", "hinge", "fixed", "rod contact",
-            "body contact"]  # fmt: skip
+FEATURES = [
+    "gravity",
+    "pull",
+    "muscle",
+    "uniform",
+    "fluid",
+    "plane",
+    "clamp",
+    "hinge",
+    "fixed",
+    "rod contact",
+    "body contact",
+]
 
 
 @settings(few, max_examples=40)

@@ -41,8 +41,17 @@ def test_curvature_from_0_to_179_degrees():
     for k, turn in enumerate(turns):
         u, _, vt = np.linalg.svd(turn @ Q[..., k])
         Q[..., k + 1] = u @ vt
-    rod = Rod.straight(angles.size + 1, start=(0, 0, 0), direction=(0, 0, 1), normal=(1, 0, 0), length=1.0, radius=0.01,
-                       density=1.0, youngs_modulus=1.0, shear_modulus=1.0)  # fmt: skip
+    rod = Rod.straight(
+        angles.size + 1,
+        start=(0, 0, 0),
+        direction=(0, 0, 1),
+        normal=(1, 0, 0),
+        length=1.0,
+        radius=0.01,
+        density=1.0,
+        youngs_modulus=1.0,
+        shear_modulus=1.0,
+    )
     model = build_model([rod])
     state, control = at_rest(model, [rod])
     motion(model, state)[2][:] = Q
@@ -152,8 +161,9 @@ def energy_change_of_a_coil(n, is_balanced):
     """Return the largest relative change of energy as one turn of a coil, at rest as such, swings for 4 s."""
     s = np.linspace(0.0, 1.0, n + 1)
     nodes = np.array([0.1 * np.cos(2.0 * np.pi * s), 0.1 * np.sin(2.0 * np.pi * s), 0.3 * s])
-    rod = Rod.through(nodes, normal=(0.0, 0.0, 1.0), radius=np.full(n, 0.005), density=1000.0, youngs_modulus=1e6,
-                      shear_modulus=4e5)  # fmt: skip
+    rod = Rod.through(
+        nodes, normal=(0.0, 0.0, 1.0), radius=np.full(n, 0.005), density=1000.0, youngs_modulus=1e6, shear_modulus=4e5
+    )
     rod = replace(rod, rest_kappa=rod.curvature)
     model = build_model([rod], is_balanced=is_balanced)
     state, control = at_rest(model, [rod])
@@ -218,9 +228,16 @@ def test_turning_the_world_turns_the_motion(seed):
 def test_stable_time_step(slenderness, ratio):
     n = 16
     rod = Rod.straight(
-        n, start=(0, 0, 0), direction=(1, 0, 0), normal=(0, 1, 0), length=0.01 * n, radius=0.01 * slenderness,
-        density=1000.0, youngs_modulus=1e6, shear_modulus=ratio * 1e6,
-    )  # fmt: skip
+        n,
+        start=(0, 0, 0),
+        direction=(1, 0, 0),
+        normal=(0, 1, 0),
+        length=0.01 * n,
+        radius=0.01 * slenderness,
+        density=1000.0,
+        youngs_modulus=1e6,
+        shear_modulus=ratio * 1e6,
+    )
     model, bound = build_model([rod]), stable_time_step(rod)
     sizes = []
     for factor in (0.98, 1.02):
@@ -235,8 +252,9 @@ def test_stable_time_step(slenderness, ratio):
 @pytest.mark.parametrize(("slope", "slides"), [(0.45, False), (0.55, True)])
 def test_a_rod_on_an_incline_slides_above_the_static_coefficient(slope, slides):
     rod = snake(20, damping_rate=1.0)
-    plane = Plane(origin=(0, 0, 0), stiffness=10.0, kinetic_friction=(0.3,) * 3, static_friction=(0.5,) * 3,
-                  slip_tolerance=1e-4)  # fmt: skip
+    plane = Plane(
+        origin=(0, 0, 0), stiffness=10.0, kinetic_friction=(0.3,) * 3, static_friction=(0.5,) * 3, slip_tolerance=1e-4
+    )
     g = 9.80665 / np.hypot(1.0, slope)
     model = build_model([rod], gravity=(0.0, -g, slope * g), planes=[plane])
     state, control = at_rest(model, [rod])
@@ -251,8 +269,18 @@ def test_a_rod_on_an_incline_slides_above_the_static_coefficient(slope, slides):
 
 def test_axial_stretch():
     """Y A (e - 1)/e, with e the stretch, balances the pull."""
-    rod = Rod.straight(10, start=(0, 0, 0), direction=(0, 1, 0), normal=(1, 0, 0), length=1.0, radius=0.05,
-                       density=1000.0, youngs_modulus=1e5, shear_modulus=4e4, damping_rate=20.0)  # fmt: skip
+    rod = Rod.straight(
+        10,
+        start=(0, 0, 0),
+        direction=(0, 1, 0),
+        normal=(1, 0, 0),
+        length=1.0,
+        radius=0.05,
+        density=1000.0,
+        youngs_modulus=1e5,
+        shear_modulus=4e4,
+        damping_rate=20.0,
+    )
     model = build_model([rod], is_loaded=True)
     state, control = at_rest(model, [rod])
     start, pull = int(model.first_slot[0]), 50.0

@@ -9,8 +9,12 @@ LARGEST = 0.01
 """Energy from nothing that is allowed, over the work of the muscles"""
 SHORTEST = 0.3
 """Least length of an element over its length at rest: 0 is flat, and below it is inside out"""
-QUICK = [("elastica_gym/SnakeForward-v1", "full"), ("elastica_gym/SnakeForward-v1", "shipped"),
-         ("elastica_gym/OctopusGrab-v1", "scripted"), ("elastica_gym/OctopusCrawl-v1", "full")]  # fmt: skip
+QUICK = [
+    ("elastica_gym/SnakeForward-v1", "full"),
+    ("elastica_gym/SnakeForward-v1", "shipped"),
+    ("elastica_gym/OctopusGrab-v1", "scripted"),
+    ("elastica_gym/OctopusCrawl-v1", "full"),
+]
 
 
 def check(env_id: str, policy: str, steps: int) -> None:

@@ -129,8 +129,11 @@ def test_reset_and_every_step_have_an_info_of_the_same_form(any_id, make_vec, mo
         assert forms == {name: (value.shape, value.dtype) for name, value in together[0].items()}
         assert all(info[f"_{name}"].all() for name in alone[0])
         # as text they would be of no use to those who make tensors of them
-        assert all(value.dtype.kind in "bif" for value in (*info.values(), *info.get("final_info", info).values())
-                   if isinstance(value, np.ndarray) and value is not info.get("final_obs"))  # fmt: skip
+        assert all(
+            value.dtype.kind in "bif"
+            for value in (*info.values(), *info.get("final_info", info).values())
+            if isinstance(value, np.ndarray) and value is not info.get("final_obs")
+        )
     kinds = [{name: type(value) for name, value in info.items()} for info in alone]
     assert kinds == kinds[:1] * len(kinds) and set(kinds[0]) == {n for n in together[0] if not n.startswith("_")}
     single.close()

@@ -35,9 +35,9 @@ def test_environment_of_a_batch_equals_the_single_one(goal_id, make_vec):
             np.testing.assert_array_equal(values[2], alone[name])
         together, rewards, *_ = batch.step(action)
         alone, reward, *_ = single.step(action[2])
-        assert reward == rewards[2] == single.unwrapped.compute_reward(
-            alone["achieved_goal"], alone["desired_goal"], {}
-        )  # fmt: skip
+        assert (
+            reward == rewards[2] == single.unwrapped.compute_reward(alone["achieved_goal"], alone["desired_goal"], {})
+        )
     single.close()
 
 

@@ -34,8 +34,12 @@ def test_an_id_of_another_packages_is_not_ours():
 def test_an_id_may_be_another_with_other_arguments():
     long = "tests/SnakeForwardLong-v0"
     spec = gymnasium.spec(IDS[0])
-    gymnasium.register(long, entry_point=spec.entry_point, vector_entry_point=spec.vector_entry_point,
-                       kwargs={**spec.kwargs, "duration": 30.0})  # fmt: skip
+    gymnasium.register(
+        long,
+        entry_point=spec.entry_point,
+        vector_entry_point=spec.vector_entry_point,
+        kwargs={**spec.kwargs, "duration": 30.0},
+    )
     try:
         assert task_of(long) is task_of(IDS[0]) and long in registered_ids()
         assert gymnasium.make(long).unwrapped.batch.max_episode_steps == 600

@@ -122,9 +122,10 @@ def test_home_is_felt(make_vec):
     np.testing.assert_allclose(columns(env, observations, "home/"), [[0.3, 0.2]] * 2, atol=1e-4)
 
 
-@pytest.mark.parametrize(("spread", "nearest", "furthest", "low", "high"),
-                         [("arc", 0.4, 0.4, 0.0, 90.0), ("anywhere", 0.4, 0.8, -180.0, 180.0),
-                          ("default", 0.4, 0.4, 90.0, 90.0)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("spread", "nearest", "furthest", "low", "high"),
+    [("arc", 0.4, 0.4, 0.0, 90.0), ("anywhere", 0.4, 0.8, -180.0, 180.0), ("default", 0.4, 0.4, 90.0, 90.0)],
+)
 def test_where_the_object_stands(make_vec, spread, nearest, furthest, low, high):
     env = make_vec(REACH, 400, spread=spread)
     observations, _ = env.reset(seed=0)

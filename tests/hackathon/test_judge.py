@@ -269,8 +269,9 @@ def test_an_arm_that_holds_the_object_has_grabbed_it():
     actions = np.zeros((2, 42))
     # full bending of the second arm, in one environment
     actions[0, 7:14] = 1.0
-    samples = run_trials(lambda *_: actions, REACH, seeds=[1, 2], watch=beside_the_second_arm, spread="default",
-                         duration=2.5)  # fmt: skip
+    samples = run_trials(
+        lambda *_: actions, REACH, seeds=[1, 2], watch=beside_the_second_arm, spread="default", duration=2.5
+    )
     assert grabbed(samples)[-1].tolist() == [True, False]
     assert samples.spans[-1, 0].argmax() == 1 and np.degrees(samples.spans[-1, 0, 1]) > 200.0
     assert samples.touched[-1, 0] and (samples.tilt[:, 0] < np.radians(30.0)).all()
@@ -309,8 +310,11 @@ def test_all_goals_can_be_held():
 
 
 def test_a_policy_that_breaks_late_is_worth_nothing(write):
-    path = write(ZERO.replace("import", "calls = 0\nimport").replace(
-        "    return", "    global calls\n    calls += 1\n    assert calls < 4\n    return"))  # fmt: skip
+    path = write(
+        ZERO.replace("import", "calls = 0\nimport").replace(
+            "    return", "    global calls\n    calls += 1\n    assert calls < 4\n    return"
+        )
+    )
     result = judge(path, REACH, **SHORT)
     assert result["total"] == 0.0 and "has ended" in result["error"]
 
@@ -340,8 +344,11 @@ def score_command(*args):
 def test_the_command(write, tmp_path):
     out, recordings = tmp_path / "out" / "score.json", tmp_path / "recordings"
     # three steps, and then it falls over: no traceback but its own
-    path = write(ZERO.replace("def policy", "calls = 0\n\ndef policy").replace(
-        "    return", "    global calls\n    calls += 1\n    assert calls < 4, 'enough'\n    return"))  # fmt: skip
+    path = write(
+        ZERO.replace("def policy", "calls = 0\n\ndef policy").replace(
+            "    return", "    global calls\n    calls += 1\n    assert calls < 4, 'enough'\n    return"
+        )
+    )
     done = score_command("--policy", path, "--env", REACH, "--targets", 1, "--json", out, "--record", recordings)
     assert done.returncode == 1, done.stderr
     assert "No points: the policy's process has ended (status 1)" in done.stdout

@@ -270,8 +270,11 @@ def test_numbers_that_are_not_finite_hold_nothing():
     for name in ("head", "centre", "head_gap", "base", "tilt", "spans"):
         broken = perfect()
         getattr(broken, name)[1:] = np.nan
-        assert held(broken) == up_to({"head": "crawl", "centre": "crawl", "head_gap": "reach", "base": "move",
-                                      "tilt": "move", "spans": "grab"}[name])  # fmt: skip
+        assert held(broken) == up_to(
+            {"head": "crawl", "centre": "crawl", "head_gap": "reach", "base": "move", "tilt": "move", "spans": "grab"}[
+                name
+            ]
+        )
 
 
 def test_samples_may_be_finer():
@@ -288,8 +291,9 @@ def points(default, arc=0.0, anywhere=0.0, n=100):
         mask[:goals, :n_held] = True
         return mask
 
-    return score({"default": default, "arc": held_in(5, round(arc * n), n),
-                  "anywhere": held_in(5, round(anywhere * n), n)})  # fmt: skip
+    return score(
+        {"default": default, "arc": held_in(5, round(arc * n), n), "anywhere": held_in(5, round(anywhere * n), n)}
+    )
 
 
 @pytest.mark.parametrize(("goals", "total"), [(0, 0.0), (1, 5.0), (2, 12.5), (3, 20.0), (4, 30.0), (5, 50.0)])
@@ -316,7 +320,10 @@ def test_points_for_targets():
 def test_the_tasks_bounds_are_the_scorers():
     """They are written twice, so that no reward decides on points."""
     assert (handling.WRAPPED, handling.FEWEST, handling.GRABBING_TIME) == (
-        scoring.GRAB, scoring.GRAB_COUNT, scoring.GRAB_TIME)  # fmt: skip
+        scoring.GRAB,
+        scoring.GRAB_COUNT,
+        scoring.GRAB_TIME,
+    )
     assert (handling.KEPT, handling.SLACK_TIME) == (scoring.HOLD, scoring.LAPSE)
     assert (handling.MOVED, handling.UPRIGHT) == (scoring.MOVE, scoring.UPRIGHT)
     assert handling.CRAWLED == (scoring.CRAWL_HEAD, scoring.CRAWL_CENTRE)

@@ -16,8 +16,24 @@ from elastica_gym.rl.policies import load_run
 from tests.agents.commands import FORWARD, REACH, ROOT, SMALL_PPO, run
 from tests.agents.test_bad_input import refused
 
-CARD = {"name", "environment", "package", "env_kwargs", "algorithm", "seed", "command", "steps", "wall_time_minutes",
-        "score", "intervals", "scored_with", "scored_on", "trained_on", "hyperparameters", "versions"}  # fmt: skip
+CARD = {
+    "name",
+    "environment",
+    "package",
+    "env_kwargs",
+    "algorithm",
+    "seed",
+    "command",
+    "steps",
+    "wall_time_minutes",
+    "score",
+    "intervals",
+    "scored_with",
+    "scored_on",
+    "trained_on",
+    "hyperparameters",
+    "versions",
+}
 
 
 @pytest.fixture(scope="module")

@@ -12,10 +12,17 @@ from elastica_gym.rl.vec_env import make_batch_vec_env
 def test_sac_with_hindsight_trains(env_id):
     env = make_batch_vec_env(env_id, n_envs=4, duration=1.0)
     model = SAC(
-        "MultiInputPolicy", env, replay_buffer_class=HerReplayBuffer, learning_starts=160, batch_size=64, seed=0,
+        "MultiInputPolicy",
+        env,
+        replay_buffer_class=HerReplayBuffer,
+        learning_starts=160,
+        batch_size=64,
+        seed=0,
         replay_buffer_kwargs=dict(n_sampled_goal=4, goal_selection_strategy="future"),
-        policy_kwargs=dict(net_arch=[32, 32]), train_freq=4, gradient_steps=2,
-    )  # fmt: skip
+        policy_kwargs=dict(net_arch=[32, 32]),
+        train_freq=4,
+        gradient_steps=2,
+    )
     before = [p.detach().numpy().copy() for p in model.actor.parameters()]
     model.learn(400)
     assert any(not np.array_equal(a, p.detach().numpy()) for a, p in zip(before, model.actor.parameters(), strict=True))

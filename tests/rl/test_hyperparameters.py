@@ -98,9 +98,13 @@ def test_numbers_that_yaml_reads_as_texts_are_numbers():
 
 
 PLAIN = st.one_of(
-    st.none(), st.booleans(), st.integers(-3, 600), st.floats(), st.text(max_size=8),
+    st.none(),
+    st.booleans(),
+    st.integers(-3, 600),
+    st.floats(),
+    st.text(max_size=8),
     st.sampled_from(["lin_0.1", "lin_-1", "lin_x", "auto", "auto_0.1", "1e-3", "nan", "1e400", "MlpPolicy", "os.path"]),
-)  # fmt: skip
+)
 INNER = st.dictionaries(st.sampled_from(["net_arch", "pi", "log_std_init", "norm_obs", "activation_fn"]), PLAIN)
 ANYTHING = st.one_of(PLAIN, st.lists(PLAIN, max_size=3), INNER)
 

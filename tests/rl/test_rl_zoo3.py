@@ -23,9 +23,32 @@ from rl_zoo3.hyperparams_opt import HYPERPARAMS_CONVERTER, HYPERPARAMS_SAMPLER  
     ],
 )
 def test_rl_zoo3_trains_from_the_same_file(tmp_path, algo, env_id, small):
-    run("rl_zoo3.train", "--algo", algo, "--env", env_id, "--gym-packages", "elastica_gym", "--conf-file",
-        ROOT / "configs" / f"{algo}.yml", "-n", 40, "--eval-freq", -1, "--num-threads", 1, "--seed", 1, "-f", tmp_path,
-        "-params", "n_envs:2", *small, "--env-kwargs", "duration:0.5")  # fmt: skip
+    run(
+        "rl_zoo3.train",
+        "--algo",
+        algo,
+        "--env",
+        env_id,
+        "--gym-packages",
+        "elastica_gym",
+        "--conf-file",
+        ROOT / "configs" / f"{algo}.yml",
+        "-n",
+        40,
+        "--eval-freq",
+        -1,
+        "--num-threads",
+        1,
+        "--seed",
+        1,
+        "-f",
+        tmp_path,
+        "-params",
+        "n_envs:2",
+        *small,
+        "--env-kwargs",
+        "duration:0.5",
+    )
     assert len(list((tmp_path / algo).rglob("*.zip"))) == 1
 
 

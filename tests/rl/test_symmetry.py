@@ -104,8 +104,11 @@ def test_policies_need_nothing_but_the_spaces(env_id, policy, tmp_path):
     wanted, _ = model.predict(seen, deterministic=True)
     model.save(tmp_path / "model.zip")
     model.policy.save(tmp_path / "policy.pt")
-    for loaded in (PPO.load(tmp_path / "model.zip", env=env), PPO.load(tmp_path / "model.zip"),
-                   policy.load(tmp_path / "policy.pt")):  # fmt: skip
+    for loaded in (
+        PPO.load(tmp_path / "model.zip", env=env),
+        PPO.load(tmp_path / "model.zip"),
+        policy.load(tmp_path / "policy.pt"),
+    ):
         np.testing.assert_array_equal(loaded.predict(seen, deterministic=True)[0], wanted)
 
 

@@ -83,9 +83,11 @@ def test_bad_files(recording, tmp_path):
     cut.write_bytes(recording.read_bytes()[:30_000])
     text.write_text("hello")
     for path, message in (
-        (tmp_path / "none.rrd", "there is no file"), (tmp_path, "is not a file"), (text, "is not a rerun recording"),
+        (tmp_path / "none.rrd", "there is no file"),
+        (tmp_path, "is not a file"),
+        (text, "is not a rerun recording"),
         (cut, "is damaged or cut short"),
-    ):  # fmt: skip
+    ):
         done = replay(path)
         assert done.returncode == 1
         assert message in done.stderr

@@ -17,9 +17,13 @@ if TYPE_CHECKING:
 
 
 FEATURES = {
-    "constrain": "Constraints", "add_forcing_to": "Forcing", "connect": "Connections", "dampen": "Damping",
-    "collect_diagnostics": "CallBacks", "detect_contact_between": "Contact",
-}  # fmt: skip
+    "constrain": "Constraints",
+    "add_forcing_to": "Forcing",
+    "connect": "Connections",
+    "dampen": "Damping",
+    "collect_diagnostics": "CallBacks",
+    "detect_contact_between": "Contact",
+}
 """Which class a simulator must be derived from to have a method"""
 
 
@@ -207,8 +211,10 @@ class BaseSystemCollection(MutableSequence):
 
     def __getstate__(self) -> dict[str, Any]:
         if self._simulation is not None:
-            raise TypeError("a finalized simulator cannot be copied or pickled, since its systems share memory with "
-                            "compiled code; use save_state, and load_state on a new simulator")
+            raise TypeError(
+                "a finalized simulator cannot be copied or pickled, since its systems share memory with "
+                "compiled code; use save_state, and load_state on a new simulator"
+            )
         return vars(self)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -226,5 +232,3 @@ class BaseSystemCollection(MutableSequence):
         for required in getattr(system, "REQUISITE_MODULES", ()):
             if not isinstance(self, required):
                 raise RuntimeError(f"{type(system).__name__} needs a simulator derived from {required.__name__}")
-
-

@@ -44,10 +44,14 @@ class Connections(_Collection):
         )
         kinds = [isinstance(each, int | np.integer) for each in (first_connect_idx, second_connect_idx)]
         if kinds[0] != kinds[1]:
-            raise TypeError("first_connect_idx and second_connect_idx must be of the same kind, "
-                            f"not {first_connect_idx!r} and {second_connect_idx!r}")  # fmt: skip
-        for name, system, index in (("first_connect_idx", first_rod, first_connect_idx),
-                                    ("second_connect_idx", second_rod, second_connect_idx)):  # fmt: skip
+            raise TypeError(
+                "first_connect_idx and second_connect_idx must be of the same kind, "
+                f"not {first_connect_idx!r} and {second_connect_idx!r}"
+            )
+        for name, system, index in (
+            ("first_connect_idx", first_rod, first_connect_idx),
+            ("second_connect_idx", second_rod, second_connect_idx),
+        ):
             for each in as_indices(name, index):
                 if not -system.n_nodes <= each < system.n_nodes:
                     raise IndexError(f"{name} must be from {-system.n_nodes} to {system.n_nodes - 1}, not {each}")

@@ -31,9 +31,14 @@ class Cylinder(RigidBodyBase):
     """
 
     def __init__(
-        self, start: ArrayLike, direction: ArrayLike, normal: ArrayLike, base_length: float, base_radius: float,
+        self,
+        start: ArrayLike,
+        direction: ArrayLike,
+        normal: ArrayLike,
+        base_length: float,
+        base_radius: float,
         density: float,
-    ) -> None:  # fmt: skip
+    ) -> None:
         for name, value in (("base_length", base_length), ("base_radius", base_radius), ("density", density)):
             require_positive(name, value)
         d3 = _unit("direction", direction)
@@ -57,8 +62,11 @@ def _perpendicular(normal: Array, axis: Array) -> Array:
     if is_parallel:
         across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     taken = "another perpendicular is taken" if is_parallel else "its perpendicular part is taken"
-    warnings.warn(f"normal is not perpendicular to direction, the cosine between them is {cosine:.3g}: {taken}",
-                  UserWarning, stacklevel=3)  # fmt: skip
+    warnings.warn(
+        f"normal is not perpendicular to direction, the cosine between them is {cosine:.3g}: {taken}",
+        UserWarning,
+        stacklevel=3,
+    )
     return across / np.linalg.norm(across)
 
 

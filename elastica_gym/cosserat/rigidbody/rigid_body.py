@@ -79,8 +79,10 @@ class RigidBodyBase:
     mass: Any
 
     def _set_up(self, position: Array, directors: Array, inertia: Array) -> None:
-        self._fields: dict[str, Array] = {name: np.zeros((3, 1)) for name in (
-            "velocity_collection", "omega_collection", "external_forces", "external_torques")}  # fmt: skip
+        self._fields: dict[str, Array] = {
+            name: np.zeros((3, 1))
+            for name in ("velocity_collection", "omega_collection", "external_forces", "external_torques")
+        }
         # where the search for friction with planes starts; a saved state has it too
         self._fields["plane_contact"] = np.zeros((6, 7))
         self._fields["position_collection"] = np.array(position, dtype=np.float64).reshape(3, 1)
@@ -137,9 +139,13 @@ class RigidBodyBase:
         if np.count_nonzero(J) > np.count_nonzero(np.diag(J)):
             raise ValueError("mass_second_moment_of_inertia must be diagonal")
         return LoweredBody(
-            length=self._axis_length, radius=self.radius, mass=float(np.squeeze(self.mass)), inertia=np.diag(J).copy(),
-            centre=self.position_collection[:, 0], directors=self.director_collection[..., 0],
-        )  # fmt: skip
+            length=self._axis_length,
+            radius=self.radius,
+            mass=float(np.squeeze(self.mass)),
+            inertia=np.diag(J).copy(),
+            centre=self.position_collection[:, 0],
+            directors=self.director_collection[..., 0],
+        )
 
     @property
     def _axis_length(self) -> float:

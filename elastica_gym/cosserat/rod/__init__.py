@@ -12,6 +12,12 @@ from ...engine.rod import (
 from .rod_base import RodBase
 
 __all__ = [
-    "Continuum", "Rod", "RodBase", "require_finite", "require_not_negative", "require_positive", "require_stable",
+    "Continuum",
+    "Rod",
+    "RodBase",
+    "require_finite",
+    "require_not_negative",
+    "require_positive",
+    "require_stable",
     "stable_time_step",
-]  # fmt: skip
+]

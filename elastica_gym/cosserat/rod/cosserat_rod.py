@@ -33,10 +33,18 @@ from .in_place import (  # noqa: F401
 from .rod_base import RodBase
 
 MATERIAL = (
-    "rest_lengths", "rest_voronoi_lengths", "density", "volume", "mass", "mass_second_moment_of_inertia",
-    "inv_mass_second_moment_of_inertia", "shear_matrix", "bend_matrix", "dissipation_constant_for_forces",
+    "rest_lengths",
+    "rest_voronoi_lengths",
+    "density",
+    "volume",
+    "mass",
+    "mass_second_moment_of_inertia",
+    "inv_mass_second_moment_of_inertia",
+    "shear_matrix",
+    "bend_matrix",
+    "dissipation_constant_for_forces",
     "dissipation_constant_for_torques",
-)  # fmt: skip
+)
 """Attributes that a simulation reads when it is entered, kept in one piece of memory."""
 
 TOLERANCE = 1e-8
@@ -87,6 +95,7 @@ class Lowered:
         That *image* has no stiffness, inertia or mass, so it moves nothing and does not move; what it is
         pushed with belongs to the first element.
         """
+
         def again(values: Array, n: int = 1) -> Array:
             return np.concatenate([values, values[..., :n]], axis=-1)
 
@@ -94,19 +103,29 @@ class Lowered:
             return np.concatenate([values, np.zeros_like(values[..., :n])], axis=-1)
 
         return Lowered(
-            n_elements=self.n_elements + 1, position=again(self.position, 2), directors=again(self.directors),
-            radius=again(self.radius), rest_kappa=self.rest_kappa, rest_sigma=again(self.rest_sigma),
-            rest_length=again(self.rest_length), rest_voronoi_length=self.rest_voronoi_length,
-            shear_stiffness=nothing(self.shear_stiffness), bend_stiffness=self.bend_stiffness,
-            nodal_mass=again(self.nodal_mass, 2), inv_nodal_mass=nothing(self.inv_nodal_mass, 2),
-            inertia=nothing(self.inertia), inv_inertia=nothing(self.inv_inertia), viscosity=nothing(self.viscosity),
+            n_elements=self.n_elements + 1,
+            position=again(self.position, 2),
+            directors=again(self.directors),
+            radius=again(self.radius),
+            rest_kappa=self.rest_kappa,
+            rest_sigma=again(self.rest_sigma),
+            rest_length=again(self.rest_length),
+            rest_voronoi_length=self.rest_voronoi_length,
+            shear_stiffness=nothing(self.shear_stiffness),
+            bend_stiffness=self.bend_stiffness,
+            nodal_mass=again(self.nodal_mass, 2),
+            inv_nodal_mass=nothing(self.inv_nodal_mass, 2),
+            inertia=nothing(self.inertia),
+            inv_inertia=nothing(self.inv_inertia),
+            viscosity=nothing(self.viscosity),
             torque_viscosity=nothing(self.torque_viscosity),
-        )  # fmt: skip
+        )
 
     def opened(self) -> "Lowered":
         """Return a ring cut open, as `stable_time_step` can judge it."""
-        return replace(self, bend_stiffness=self.bend_stiffness[:, :-1],
-                       nodal_mass=np.append(self.nodal_mass, self.nodal_mass[0]))  # fmt: skip
+        return replace(
+            self, bend_stiffness=self.bend_stiffness[:, :-1], nodal_mass=np.append(self.nodal_mass, self.nodal_mass[0])
+        )
 
 
 class CosseratRod(RodBase):
@@ -177,10 +196,21 @@ class CosseratRod(RodBase):
     dissipation_constant_for_torques = Field()
 
     def __init__(
-        self, *, position: Array, directors: Array, radius: Array, density: Array, youngs_modulus: float,
-        shear_modulus: float, alpha_c: float, nu: float, nu_for_torques: float, rest_sigma: Array, rest_kappa: Array,
+        self,
+        *,
+        position: Array,
+        directors: Array,
+        radius: Array,
+        density: Array,
+        youngs_modulus: float,
+        shear_modulus: float,
+        alpha_c: float,
+        nu: float,
+        nu_for_torques: float,
+        rest_sigma: Array,
+        rest_kappa: Array,
         is_ring: bool,
-    ) -> None:  # fmt: skip
+    ) -> None:
         n = directors.shape[2]
         self.n_elems, self.n_nodes, self.ring_rod_flag = n, position.shape[1], is_ring
         edges = _edges(position, is_ring)
@@ -193,13 +223,20 @@ class CosseratRod(RodBase):
         inertia = density * length * second_moment
         element_mass = density * area * length
         self._fields: dict[str, Array] = {
-            "position_collection": position, "velocity_collection": np.zeros_like(position),
-            "director_collection": directors, "omega_collection": np.zeros((3, n)),
-            "rest_sigma": rest_sigma, "rest_kappa": rest_kappa,
-            "external_forces": np.zeros_like(position), "external_torques": np.zeros((3, n)),
-            "net_forces": np.zeros_like(position), "net_torques": np.zeros((3, n)),
-            "rest_lengths": length, "rest_voronoi_lengths": 0.5 * (before + after),
-            "density": density, "volume": area * length,
+            "position_collection": position,
+            "velocity_collection": np.zeros_like(position),
+            "director_collection": directors,
+            "omega_collection": np.zeros((3, n)),
+            "rest_sigma": rest_sigma,
+            "rest_kappa": rest_kappa,
+            "external_forces": np.zeros_like(position),
+            "external_torques": np.zeros((3, n)),
+            "net_forces": np.zeros_like(position),
+            "net_torques": np.zeros((3, n)),
+            "rest_lengths": length,
+            "rest_voronoi_lengths": 0.5 * (before + after),
+            "density": density,
+            "volume": area * length,
             "mass": strain.quadrature(element_mass, is_ring),
             "mass_second_moment_of_inertia": _diagonal(inertia),
             "inv_mass_second_moment_of_inertia": _diagonal(1.0 / inertia),
@@ -207,16 +244,31 @@ class CosseratRod(RodBase):
             "bend_matrix": _diagonal(np.add(*strain.between(bend, is_ring)) / (before + after)),
             "dissipation_constant_for_forces": np.full(n, nu),
             "dissipation_constant_for_torques": np.full(n, nu_for_torques),
-        }  # fmt: skip
+        }
 
     @classmethod
     def straight_rod(
-        cls, n_elements: int, start: ArrayLike, direction: ArrayLike, normal: ArrayLike, base_length: float,
-        base_radius: ArrayLike, density: ArrayLike, nu: float | None = None, youngs_modulus: float | None = None,
-        poisson_ratio: float | None = None, *, nu_for_torques: float | None = None, shear_modulus: float | None = None,
-        alpha_c: float = SHEAR_CORRECTION, position: ArrayLike | None = None, directors: ArrayLike | None = None,
-        rest_sigma: ArrayLike | None = None, rest_kappa: ArrayLike | None = None, **unknown: Any,
-    ) -> Self:  # fmt: skip
+        cls,
+        n_elements: int,
+        start: ArrayLike,
+        direction: ArrayLike,
+        normal: ArrayLike,
+        base_length: float,
+        base_radius: ArrayLike,
+        density: ArrayLike,
+        nu: float | None = None,
+        youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None,
+        *,
+        nu_for_torques: float | None = None,
+        shear_modulus: float | None = None,
+        alpha_c: float = SHEAR_CORRECTION,
+        position: ArrayLike | None = None,
+        directors: ArrayLike | None = None,
+        rest_sigma: ArrayLike | None = None,
+        rest_kappa: ArrayLike | None = None,
+        **unknown: Any,
+    ) -> Self:
         """Return a straight rod of equal elements, or one through given nodes.
 
         As in PyElastica, unknown keywords are ignored, but with a warning.
@@ -263,19 +315,45 @@ class CosseratRod(RodBase):
             if np.abs(nodes[:, :1] - first).max() > TOLERANCE * (base_length + np.abs(first).max()):
                 raise ValueError(f"start must be the first node of position, {nodes[:, 0]}, not {first[:, 0]}")
         return cls._made(
-            nodes, False, normal, base_radius, density, nu, youngs_modulus, poisson_ratio, nu_for_torques,
-            shear_modulus, alpha_c, directors, rest_sigma, rest_kappa,
-        )  # fmt: skip
+            nodes,
+            False,
+            normal,
+            base_radius,
+            density,
+            nu,
+            youngs_modulus,
+            poisson_ratio,
+            nu_for_torques,
+            shear_modulus,
+            alpha_c,
+            directors,
+            rest_sigma,
+            rest_kappa,
+        )
 
     @classmethod
     def ring_rod(
-        cls, n_elements: int, ring_center_position: ArrayLike, direction: ArrayLike, normal: ArrayLike,
-        base_length: float, base_radius: ArrayLike, density: ArrayLike, nu: float | None = None,
-        youngs_modulus: float | None = None, poisson_ratio: float | None = None, *,
-        nu_for_torques: float | None = None, shear_modulus: float | None = None, alpha_c: float = SHEAR_CORRECTION,
-        position: ArrayLike | None = None, directors: ArrayLike | None = None, rest_sigma: ArrayLike | None = None,
-        rest_kappa: ArrayLike | None = None, **unknown: Any,
-    ) -> Self:  # fmt: skip
+        cls,
+        n_elements: int,
+        ring_center_position: ArrayLike,
+        direction: ArrayLike,
+        normal: ArrayLike,
+        base_length: float,
+        base_radius: ArrayLike,
+        density: ArrayLike,
+        nu: float | None = None,
+        youngs_modulus: float | None = None,
+        poisson_ratio: float | None = None,
+        *,
+        nu_for_torques: float | None = None,
+        shear_modulus: float | None = None,
+        alpha_c: float = SHEAR_CORRECTION,
+        position: ArrayLike | None = None,
+        directors: ArrayLike | None = None,
+        rest_sigma: ArrayLike | None = None,
+        rest_kappa: ArrayLike | None = None,
+        **unknown: Any,
+    ) -> Self:
         """Return a closed rod in the plane across ``normal``: a circle, or through given nodes.
 
         A ring of n elements has as many nodes and Voronoi points, so ``position`` and ``rest_kappa``
@@ -295,17 +373,40 @@ class CosseratRod(RodBase):
         else:
             nodes = _array("position", position, (3, n_elements))
         return cls._made(
-            nodes, True, normal, base_radius, density, nu, youngs_modulus, poisson_ratio, nu_for_torques,
-            shear_modulus, alpha_c, directors, rest_sigma, rest_kappa,
-        )  # fmt: skip
+            nodes,
+            True,
+            normal,
+            base_radius,
+            density,
+            nu,
+            youngs_modulus,
+            poisson_ratio,
+            nu_for_torques,
+            shear_modulus,
+            alpha_c,
+            directors,
+            rest_sigma,
+            rest_kappa,
+        )
 
     @classmethod
     def _made(
-        cls, nodes: Array, is_ring: bool, normal: ArrayLike, radius: ArrayLike, density: ArrayLike, nu: float | None,
-        youngs_modulus: float | None, poisson_ratio: float | None, nu_for_torques: float | None,
-        shear_modulus: float | None, alpha_c: float, directors: ArrayLike | None, rest_sigma: ArrayLike | None,
+        cls,
+        nodes: Array,
+        is_ring: bool,
+        normal: ArrayLike,
+        radius: ArrayLike,
+        density: ArrayLike,
+        nu: float | None,
+        youngs_modulus: float | None,
+        poisson_ratio: float | None,
+        nu_for_torques: float | None,
+        shear_modulus: float | None,
+        alpha_c: float,
+        directors: ArrayLike | None,
+        rest_sigma: ArrayLike | None,
         rest_kappa: ArrayLike | None,
-    ) -> Self:  # fmt: skip
+    ) -> Self:
         """Check what both constructors take, and make the rod."""
         if youngs_modulus is None:
             raise TypeError("youngs_modulus is missing; give it in Pa")
@@ -320,12 +421,19 @@ class CosseratRod(RodBase):
         require_not_negative("nu", force_nu)
         require_not_negative("nu_for_torques", torque_nu)
         return cls(
-            position=nodes, directors=_directors(edges, normal, directors), radius=_each("base_radius", radius, n),
-            density=_each("density", density, n), youngs_modulus=float(youngs_modulus), shear_modulus=G,
-            alpha_c=float(alpha_c), nu=force_nu, nu_for_torques=torque_nu, is_ring=is_ring,
+            position=nodes,
+            directors=_directors(edges, normal, directors),
+            radius=_each("base_radius", radius, n),
+            density=_each("density", density, n),
+            youngs_modulus=float(youngs_modulus),
+            shear_modulus=G,
+            alpha_c=float(alpha_c),
+            nu=force_nu,
+            nu_for_torques=torque_nu,
+            is_ring=is_ring,
             rest_sigma=np.zeros((3, n)) if rest_sigma is None else _array("rest_sigma", rest_sigma, (3, n)),
             rest_kappa=np.zeros((3, joints)) if rest_kappa is None else _array("rest_kappa", rest_kappa, (3, joints)),
-        )  # fmt: skip
+        )
 
     # what follows from the arrays
 
@@ -385,12 +493,19 @@ class CosseratRod(RodBase):
     @property
     def internal_torques(self) -> Array:  # noqa: D102
         return strain.internal_torques(
-            directors=self.director_collection, omega=self.omega_collection, edges=self._edges,
-            edge_rates=_edges(self.velocity_collection, self.ring_rod_flag), rest_lengths=self.rest_lengths,
-            stress=self.internal_stress, kappa=self.kappa, couple=self.internal_couple,
-            voronoi_dilatation=self.voronoi_dilatation, rest_voronoi_lengths=self.rest_voronoi_lengths,
-            inertia=self.mass_second_moment_of_inertia, is_ring=self.ring_rod_flag,
-        )  # fmt: skip
+            directors=self.director_collection,
+            omega=self.omega_collection,
+            edges=self._edges,
+            edge_rates=_edges(self.velocity_collection, self.ring_rod_flag),
+            rest_lengths=self.rest_lengths,
+            stress=self.internal_stress,
+            kappa=self.kappa,
+            couple=self.internal_couple,
+            voronoi_dilatation=self.voronoi_dilatation,
+            rest_voronoi_lengths=self.rest_voronoi_lengths,
+            inertia=self.mass_second_moment_of_inertia,
+            is_ring=self.ring_rod_flag,
+        )
 
     @property
     def damping_forces(self) -> Array:  # noqa: D102
@@ -458,16 +573,23 @@ class CosseratRod(RodBase):
         for name in ("rest_lengths", "rest_voronoi_lengths", "volume", "mass"):
             require_positive(f"smallest of {name}", float(getattr(self, name).min()))
         return Lowered(
-            n_elements=self.n_elems, position=self.position_collection, directors=self.director_collection,
-            radius=np.sqrt(self.volume / (np.pi * self.rest_lengths)), rest_kappa=self.rest_kappa,
-            rest_sigma=self.rest_sigma, rest_length=self.rest_lengths, rest_voronoi_length=self.rest_voronoi_lengths,
+            n_elements=self.n_elems,
+            position=self.position_collection,
+            directors=self.director_collection,
+            radius=np.sqrt(self.volume / (np.pi * self.rest_lengths)),
+            rest_kappa=self.rest_kappa,
+            rest_sigma=self.rest_sigma,
+            rest_length=self.rest_lengths,
+            rest_voronoi_length=self.rest_voronoi_lengths,
             shear_stiffness=_diagonal_of("shear_matrix", self.shear_matrix),
-            bend_stiffness=_diagonal_of("bend_matrix", self.bend_matrix), nodal_mass=self.mass,
+            bend_stiffness=_diagonal_of("bend_matrix", self.bend_matrix),
+            nodal_mass=self.mass,
             inv_nodal_mass=1.0 / self.mass,
             inertia=_diagonal_of("mass_second_moment_of_inertia", self.mass_second_moment_of_inertia),
             inv_inertia=_diagonal_of("inv_mass_second_moment_of_inertia", self.inv_mass_second_moment_of_inertia),
-            viscosity=self.dissipation_constant_for_forces, torque_viscosity=self.dissipation_constant_for_torques,
-        )  # fmt: skip
+            viscosity=self.dissipation_constant_for_forces,
+            torque_viscosity=self.dissipation_constant_for_torques,
+        )
 
     def _move(self, memory: dict[str, Array]) -> None:
         """Copy fields to other memory and use that from now on."""
@@ -521,8 +643,9 @@ def _directors(edges: Array, normal: ArrayLike, directors: ArrayLike | None) -> 
         Q = _array("directors", directors, (3, 3, n))
         off = np.abs(np.einsum("ijk,ljk->ilk", Q, Q) - np.eye(3)[:, :, None]).max()
         if off > TOLERANCE or (np.linalg.det(Q.T) < 0.0).any():
-            raise ValueError("directors must be right-handed orthonormal rows d1, d2, d3; "
-                             f"their products are off by {off:.3g}")  # fmt: skip
+            raise ValueError(
+                f"directors must be right-handed orthonormal rows d1, d2, d3; their products are off by {off:.3g}"
+            )
         return Q
     d1 = np.repeat(_unit("normal", normal)[:, None], n, axis=1)
     slant = np.abs((d1 * tangents).sum(axis=0)).max()

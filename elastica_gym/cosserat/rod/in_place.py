@@ -28,9 +28,16 @@ def _compute_geometry_from_state(
 
 
 def _compute_all_dilatations(
-    position_collection: Array, volume: Array, lengths: Array, tangents: Array, radius: Array, dilatation: Array,
-    rest_lengths: Array, rest_voronoi_lengths: Array, voronoi_dilatation: Array,
-) -> None:  # fmt: skip
+    position_collection: Array,
+    volume: Array,
+    lengths: Array,
+    tangents: Array,
+    radius: Array,
+    dilatation: Array,
+    rest_lengths: Array,
+    rest_voronoi_lengths: Array,
+    voronoi_dilatation: Array,
+) -> None:
     """Write what `_compute_geometry_from_state` does, and how far elements and Voronoi lengths are stretched."""
     _compute_geometry_from_state(position_collection, volume, lengths, tangents, radius)
     dilatation[:] = lengths / rest_lengths
@@ -46,25 +53,63 @@ def _compute_dilatation_rate(
 
 
 def _compute_shear_stretch_strains(
-    position_collection: Array, volume: Array, lengths: Array, tangents: Array, radius: Array, rest_lengths: Array,
-    rest_voronoi_lengths: Array, dilatation: Array, voronoi_dilatation: Array, director_collection: Array,
+    position_collection: Array,
+    volume: Array,
+    lengths: Array,
+    tangents: Array,
+    radius: Array,
+    rest_lengths: Array,
+    rest_voronoi_lengths: Array,
+    dilatation: Array,
+    voronoi_dilatation: Array,
+    director_collection: Array,
     sigma: Array,
-) -> None:  # fmt: skip
+) -> None:
     """Write what `_compute_all_dilatations` does, and sigma."""
-    _compute_all_dilatations(position_collection, volume, lengths, tangents, radius, dilatation, rest_lengths,
-                             rest_voronoi_lengths, voronoi_dilatation)  # fmt: skip
+    _compute_all_dilatations(
+        position_collection,
+        volume,
+        lengths,
+        tangents,
+        radius,
+        dilatation,
+        rest_lengths,
+        rest_voronoi_lengths,
+        voronoi_dilatation,
+    )
     sigma[:] = strain.shear(director_collection, np.diff(position_collection, axis=1), rest_lengths)
 
 
 def _compute_internal_shear_stretch_stresses_from_model(
-    position_collection: Array, volume: Array, lengths: Array, tangents: Array, radius: Array, rest_lengths: Array,
-    rest_voronoi_lengths: Array, dilatation: Array, voronoi_dilatation: Array, director_collection: Array,
-    sigma: Array, rest_sigma: Array, shear_matrix: Array, internal_stress: Array,
-) -> None:  # fmt: skip
+    position_collection: Array,
+    volume: Array,
+    lengths: Array,
+    tangents: Array,
+    radius: Array,
+    rest_lengths: Array,
+    rest_voronoi_lengths: Array,
+    dilatation: Array,
+    voronoi_dilatation: Array,
+    director_collection: Array,
+    sigma: Array,
+    rest_sigma: Array,
+    shear_matrix: Array,
+    internal_stress: Array,
+) -> None:
     """Write what `_compute_shear_stretch_strains` does, and the stress S (sigma - sigma^)."""
-    _compute_shear_stretch_strains(position_collection, volume, lengths, tangents, radius, rest_lengths,
-                                   rest_voronoi_lengths, dilatation, voronoi_dilatation, director_collection,
-                                   sigma)  # fmt: skip
+    _compute_shear_stretch_strains(
+        position_collection,
+        volume,
+        lengths,
+        tangents,
+        radius,
+        rest_lengths,
+        rest_voronoi_lengths,
+        dilatation,
+        voronoi_dilatation,
+        director_collection,
+        sigma,
+    )
     internal_stress[:] = strain.apply(shear_matrix, sigma - rest_sigma)
 
 
@@ -74,39 +119,82 @@ def _compute_bending_twist_strains(director_collection: Array, rest_voronoi_leng
 
 
 def _compute_internal_bending_twist_stresses_from_model(
-    director_collection: Array, rest_voronoi_lengths: Array, internal_couple: Array, bend_matrix: Array, kappa: Array,
+    director_collection: Array,
+    rest_voronoi_lengths: Array,
+    internal_couple: Array,
+    bend_matrix: Array,
+    kappa: Array,
     rest_kappa: Array,
-) -> None:  # fmt: skip
+) -> None:
     """Write kappa and the couple B (kappa - kappa^)."""
     _compute_bending_twist_strains(director_collection, rest_voronoi_lengths, kappa)
     internal_couple[:] = strain.apply(bend_matrix, kappa - rest_kappa)
 
 
 def _compute_internal_forces(
-    position_collection: Array, volume: Array, lengths: Array, tangents: Array, radius: Array, rest_lengths: Array,
-    rest_voronoi_lengths: Array, dilatation: Array, voronoi_dilatation: Array, director_collection: Array,
-    sigma: Array, rest_sigma: Array, shear_matrix: Array, internal_stress: Array, internal_forces: Array,
+    position_collection: Array,
+    volume: Array,
+    lengths: Array,
+    tangents: Array,
+    radius: Array,
+    rest_lengths: Array,
+    rest_voronoi_lengths: Array,
+    dilatation: Array,
+    voronoi_dilatation: Array,
+    director_collection: Array,
+    sigma: Array,
+    rest_sigma: Array,
+    shear_matrix: Array,
+    internal_stress: Array,
+    internal_forces: Array,
     ghost_elems_idx: NDArray[np.int32],
-) -> None:  # fmt: skip
+) -> None:
     """Write what `_compute_internal_shear_stretch_stresses_from_model` does, and the forces on nodes [N]."""
     _compute_internal_shear_stretch_stresses_from_model(
-        position_collection, volume, lengths, tangents, radius, rest_lengths, rest_voronoi_lengths, dilatation,
-        voronoi_dilatation, director_collection, sigma, rest_sigma, shear_matrix, internal_stress,
-    )  # fmt: skip
+        position_collection,
+        volume,
+        lengths,
+        tangents,
+        radius,
+        rest_lengths,
+        rest_voronoi_lengths,
+        dilatation,
+        voronoi_dilatation,
+        director_collection,
+        sigma,
+        rest_sigma,
+        shear_matrix,
+        internal_stress,
+    )
     stress = strain.apply_transposed(director_collection, internal_stress / dilatation)
     internal_forces[:] = difference_kernel_for_block_structure(stress, ghost_elems_idx)
 
 
 def _compute_internal_torques(
-    position_collection: Array, velocity_collection: Array, tangents: Array, lengths: Array, rest_lengths: Array,
-    director_collection: Array, rest_voronoi_lengths: Array, bend_matrix: Array, rest_kappa: Array, kappa: Array,
-    voronoi_dilatation: Array, mass_second_moment_of_inertia: Array, omega_collection: Array, internal_stress: Array,
-    internal_couple: Array, dilatation: Array, dilatation_rate: Array, internal_torques: Array,
+    position_collection: Array,
+    velocity_collection: Array,
+    tangents: Array,
+    lengths: Array,
+    rest_lengths: Array,
+    director_collection: Array,
+    rest_voronoi_lengths: Array,
+    bend_matrix: Array,
+    rest_kappa: Array,
+    kappa: Array,
+    voronoi_dilatation: Array,
+    mass_second_moment_of_inertia: Array,
+    omega_collection: Array,
+    internal_stress: Array,
+    internal_couple: Array,
+    dilatation: Array,
+    dilatation_rate: Array,
+    internal_torques: Array,
     ghost_voronoi_idx: NDArray[np.int32],
-) -> None:  # fmt: skip
+) -> None:
     """Write kappa, couples, dilatation rates and the torques on elements [N m], material frame."""
-    _compute_internal_bending_twist_stresses_from_model(director_collection, rest_voronoi_lengths, internal_couple,
-                                                        bend_matrix, kappa, rest_kappa)  # fmt: skip
+    _compute_internal_bending_twist_stresses_from_model(
+        director_collection, rest_voronoi_lengths, internal_couple, bend_matrix, kappa, rest_kappa
+    )
     _compute_dilatation_rate(position_collection, velocity_collection, lengths, rest_lengths, dilatation_rate)
     weight = 1.0 / voronoi_dilatation**3
     bending = difference_kernel_for_block_structure(internal_couple * weight, ghost_voronoi_idx)
@@ -119,10 +207,16 @@ def _compute_internal_torques(
 
 
 def _update_accelerations(
-    acceleration_collection: Array, internal_forces: Array, external_forces: Array, mass: Array,
-    alpha_collection: Array, inv_mass_second_moment_of_inertia: Array, internal_torques: Array,
-    external_torques: Array, dilatation: Array,
-) -> None:  # fmt: skip
+    acceleration_collection: Array,
+    internal_forces: Array,
+    external_forces: Array,
+    mass: Array,
+    alpha_collection: Array,
+    inv_mass_second_moment_of_inertia: Array,
+    internal_torques: Array,
+    external_torques: Array,
+    dilatation: Array,
+) -> None:
     """Write the accelerations of nodes [m/s^2] and elements [rad/s^2]."""
     acceleration_collection[:] = (internal_forces + external_forces) / mass
     torques = internal_torques + external_torques
@@ -136,9 +230,12 @@ def _zeroed_out_external_forces_and_torques(external_forces: Array, external_tor
 
 
 def _compute_damping_forces(
-    damping_forces: Array, velocity_collection: Array, dissipation_constant_for_forces: Array, lengths: Array,
+    damping_forces: Array,
+    velocity_collection: Array,
+    dissipation_constant_for_forces: Array,
+    lengths: Array,
     ghost_elems_idx: NDArray[np.int32],
-) -> None:  # fmt: skip
+) -> None:
     """Write the damping of nodes in 0.2.x [N]."""
     velocity = 0.5 * (velocity_collection[:, 1:] + velocity_collection[:, :-1])
     force = dissipation_constant_for_forces * lengths * velocity

@@ -60,8 +60,13 @@ class KnotTheory:
     def compute_link(self, type_of_additional_segment: str | None = "next_tangent") -> np.float64:
         """Return the link, twist plus writhe [turns]."""
         length = float(self.rest_lengths.sum())
-        return compute_link(self.position_collection[None], self.director_collection[None, 0], self.radius[None],
-                            length, type_of_additional_segment)[0]  # fmt: skip
+        return compute_link(
+            self.position_collection[None],
+            self.director_collection[None, 0],
+            self.radius[None],
+            length,
+            type_of_additional_segment,
+        )[0]
 
 
 def compute_twist(center_line: ArrayLike, normal_collection: ArrayLike) -> tuple[Array, Array]:
@@ -123,9 +128,12 @@ def compute_writhe(
 
 
 def compute_link(
-    center_line: ArrayLike, normal_collection: ArrayLike, radius: ArrayLike, segment_length: float,
+    center_line: ArrayLike,
+    normal_collection: ArrayLike,
+    radius: ArrayLike,
+    segment_length: float,
     type_of_additional_segment: str | None = "next_tangent",
-) -> Array:  # fmt: skip
+) -> Array:
     """Return the link of a centre line and the line at a radius from it along the normals.
 
     Parameters
@@ -158,8 +166,10 @@ def compute_link(
 def _line_and_normals(center_line: ArrayLike, normal_collection: ArrayLike) -> tuple[Array, Array]:
     line, normals = np.asarray(center_line, dtype=float), np.asarray(normal_collection, dtype=float)
     if line.ndim != 3 or normals.shape != (line.shape[0], 3, line.shape[2] - 1):
-        raise ValueError("center_line must be nodes of an open rod, (time, 3, n + 1), and normal_collection normals "
-                         f"of its elements, (time, 3, n), not {line.shape} and {normals.shape}")  # fmt: skip
+        raise ValueError(
+            "center_line must be nodes of an open rod, (time, 3, n + 1), and normal_collection normals "
+            f"of its elements, (time, 3, n), not {line.shape} and {normals.shape}"
+        )
     return line, normals
 
 

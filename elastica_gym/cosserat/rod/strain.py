@@ -60,9 +60,20 @@ def shear(directors: Array, edges: Array, rest_lengths: Array) -> Array:
 
 
 def internal_torques(
-    *, directors: Array, omega: Array, edges: Array, edge_rates: Array, rest_lengths: Array, stress: Array,
-    kappa: Array, couple: Array, voronoi_dilatation: Array, rest_voronoi_lengths: Array, inertia: Array, is_ring: bool,
-) -> Array:  # fmt: skip
+    *,
+    directors: Array,
+    omega: Array,
+    edges: Array,
+    edge_rates: Array,
+    rest_lengths: Array,
+    stress: Array,
+    kappa: Array,
+    couple: Array,
+    voronoi_dilatation: Array,
+    rest_voronoi_lengths: Array,
+    inertia: Array,
+    is_ring: bool,
+) -> Array:
     """Return T of Gazzola et al. 2018, eq. 2.21, on elements [N m], material frame, (3, n)."""
     weight = 1.0 / voronoi_dilatation**3
     bending = difference(couple * weight, is_ring)

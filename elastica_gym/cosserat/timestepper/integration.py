@@ -13,9 +13,13 @@ ENTRY_TIME = 0.1
 
 
 def integrate(
-    stepper: SymplecticStepper, systems: Any, final_time: float, n_steps: int = 1000, restart_time: float = 0.0,
+    stepper: SymplecticStepper,
+    systems: Any,
+    final_time: float,
+    n_steps: int = 1000,
+    restart_time: float = 0.0,
     progress_bar: bool = True,
-) -> float:  # fmt: skip
+) -> float:
     """Run a simulator for a time, and return the time after [s].
 
     Compiled code is entered once from each callback to the next, or every tenth of a second.
@@ -85,8 +89,13 @@ class _Progress:
         if self._is_on and (now - self._shown > 0.25 or done == self._total):
             self._shown = now
             speed = done / max(now - self._started, 1e-9)
-            print(f"\r{100 * done / self._total:5.1f} %  {done} of {self._total} steps, {speed:,.0f} a second, "
-                  f"time {time:.6g} s ", end="", file=sys.stderr, flush=True)  # fmt: skip
+            print(
+                f"\r{100 * done / self._total:5.1f} %  {done} of {self._total} steps, {speed:,.0f} a second, "
+                f"time {time:.6g} s ",
+                end="",
+                file=sys.stderr,
+                flush=True,
+            )
 
     def end(self) -> None:
         """End the line."""

@@ -52,8 +52,13 @@ FIRST = np.uint64(LEAD)
 
 # contraction into multiply-adds is all that is relaxed: reassociation would cost reproducibility
 # (and nothing is allocated, so that arrays need no reference counts: they would take half of the step)
-_COMMON: dict[str, Any] = {"_nrt": False, "nogil": True, "error_model": "numpy", "fastmath": {"contract"},
-                           "no_cfunc_wrapper": True}
+_COMMON: dict[str, Any] = {
+    "_nrt": False,
+    "nogil": True,
+    "error_model": "numpy",
+    "fastmath": {"contract"},
+    "no_cfunc_wrapper": True,
+}
 # what only kernels call needs no way in from Python, which for a Model and a State takes long to compile
 _INNER: dict[str, Any] = {**_COMMON, "no_cpython_wrapper": True}
 
@@ -143,8 +148,9 @@ class _Pipeline(CompilerBase):
 
     def define_pipelines(self) -> list:
         manager = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        manager.passes = [(self.lowering_pass, name) if each is NativeLowering else (each, name)
-                          for each, name in manager.passes]
+        manager.passes = [
+            (self.lowering_pass, name) if each is NativeLowering else (each, name) for each, name in manager.passes
+        ]
         return [manager]
 
 
@@ -299,8 +305,12 @@ class _EntryCache(FunctionCache):
         found = super().load_overload(sig, target_context)
         if found is None:
             self._started = time.perf_counter()
-            print(f"elastica_gym: compiling {self._py_func.__name__} for this machine, once", end=" ... ",
-                  file=sys.stderr, flush=True)
+            print(
+                f"elastica_gym: compiling {self._py_func.__name__} for this machine, once",
+                end=" ... ",
+                file=sys.stderr,
+                flush=True,
+            )
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:

@@ -121,13 +121,24 @@ TASK = handling_task(
     starts={name: OBJECT_STARTS[name] for name in ("default", "arc", "anywhere")},
     see_goal=see_object,
     reward_terms={
-        "approach": approach, "move": move, "success": success, "early": early, "effort": effort, "toppled": toppled,
+        "approach": approach,
+        "move": move,
+        "success": success,
+        "early": early,
+        "effort": effort,
+        "toppled": toppled,
         "fallen": fallen,
     },
     reward_weights={
-        "approach": 10.0, "move": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "toppled": -10.0,
-        "fallen": -10.0, "diverged": -10.0,
+        "approach": 10.0,
+        "move": 10.0,
+        "success": 10.0,
+        "early": 10.0,
+        "effort": 0.1,
+        "toppled": -10.0,
+        "fallen": -10.0,
+        "diverged": -10.0,
     },
     distance=distance,
     succeeds=has_moved,
-)  # fmt: skip
+)

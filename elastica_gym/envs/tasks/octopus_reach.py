@@ -140,7 +140,12 @@ TASK = Task(
     see_goal=see_object,
     reward_terms={"approach": approach, "success": success, "early": early, "effort": effort, "toppled": toppled},
     reward_weights={
-        "approach": 10.0, "success": 10.0, "early": 10.0, "effort": 0.1, "toppled": -10.0, "diverged": -10.0,
+        "approach": 10.0,
+        "success": 10.0,
+        "early": 10.0,
+        "effort": 0.1,
+        "toppled": -10.0,
+        "diverged": -10.0,
     },
     distance=distance,
     succeeds=succeeds,

@@ -161,10 +161,14 @@ def follow(situation: Situation, state: State) -> Array:
         velocity_x=(1.0 - share) * old.velocity_x + share * way[:, 0] / s.control_dt,
         velocity_z=(1.0 - share) * old.velocity_z + share * way[:, 2] / s.control_dt,
     )
-    return np.stack(new._replace(
-        error=old.error + _off(s, new) * lasted, asked=old.asked + speed * lasted,
-        along=old.along + np.where(lasted > 0.0, way[:, 0] * x + way[:, 2] * z, 0.0),
-    ), axis=1)  # fmt: skip
+    return np.stack(
+        new._replace(
+            error=old.error + _off(s, new) * lasted,
+            asked=old.asked + speed * lasted,
+            along=old.along + np.where(lasted > 0.0, way[:, 0] * x + way[:, 2] * z, 0.0),
+        ),
+        axis=1,
+    )
 
 
 def now(situation: Situation) -> Course:

@@ -44,18 +44,19 @@ class GenericSystemTypeFreeJoint(ConnectionBase):
     """
 
     def __init__(
-        self, k: float, nu: float, point_system_one: ArrayLike | None = None,
-        point_system_two: ArrayLike | None = None, **kwargs: Any,
-    ) -> None:  # fmt: skip
+        self,
+        k: float,
+        nu: float,
+        point_system_one: ArrayLike | None = None,
+        point_system_two: ArrayLike | None = None,
+        **kwargs: Any,
+    ) -> None:
         self.k, self.nu = as_number("k", k), as_number("nu", nu)
         self.point_system_one, self.point_system_two = (
-            np.zeros(3) if point is None else np.asarray(point)
-            for point in (point_system_one, point_system_two)
+            np.zeros(3) if point is None else np.asarray(point) for point in (point_system_one, point_system_two)
         )
 
-    def apply_forces(
-        self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
-    ) -> None:
+    def apply_forces(self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0) -> None:
         """Add k (x2 - x1) + nu (v2 - v1) to one, its opposite to two, and the torques of both."""
         ends = (system_one, self.point_system_one, index_one), (system_two, self.point_system_two, index_two)
         x1, x2 = (compute_position_of_point(*end) for end in ends)
@@ -83,9 +84,16 @@ class GenericSystemTypeFixedJoint(GenericSystemTypeFreeJoint):
     """
 
     def __init__(
-        self, k: float, nu: float, kt: float, nut: float = 0.0, point_system_one: ArrayLike | None = None,
-        point_system_two: ArrayLike | None = None, rest_rotation_matrix: ArrayLike | None = None, **kwargs: Any,
-    ) -> None:  # fmt: skip
+        self,
+        k: float,
+        nu: float,
+        kt: float,
+        nut: float = 0.0,
+        point_system_one: ArrayLike | None = None,
+        point_system_two: ArrayLike | None = None,
+        rest_rotation_matrix: ArrayLike | None = None,
+        **kwargs: Any,
+    ) -> None:
         super().__init__(k, nu, point_system_one, point_system_two)
         self.turn = FixedJoint(k, nu, kt, nut, rest_rotation_matrix)
 

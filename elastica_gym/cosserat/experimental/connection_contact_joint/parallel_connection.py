@@ -33,9 +33,11 @@ def get_connection_vector_straight_straight_rod(
     between = _middles(rod_two)[:, two] - _middles(rod_one)[:, one]
     distance = np.linalg.norm(between, axis=0)
     between /= distance
-    return (np.einsum("ijk,jk->ik", rod_one.director_collection[..., one], between),
-            np.einsum("ijk,jk->ik", rod_two.director_collection[..., two], -between),
-            distance - rod_one.radius[one] - rod_two.radius[two])  # fmt: skip
+    return (
+        np.einsum("ijk,jk->ik", rod_one.director_collection[..., one], between),
+        np.einsum("ijk,jk->ik", rod_two.director_collection[..., two], -between),
+        distance - rod_one.radius[one] - rod_two.radius[two],
+    )
 
 
 @refuse_methods
@@ -59,19 +61,27 @@ class SurfaceJointSideBySide(ConnectionBase):
     IS_COMPILED = True
 
     def __init__(
-        self, k: ArrayLike, nu: ArrayLike, k_repulsive: ArrayLike, rod_one_direction_vec_in_material_frame: ArrayLike,
-        rod_two_direction_vec_in_material_frame: ArrayLike, offset_btw_rods: ArrayLike, **kwargs: Any,
-    ) -> None:  # fmt: skip
-        towards = [np.array(each, dtype=np.float64).reshape(3, -1)
-                   for each in (rod_one_direction_vec_in_material_frame, rod_two_direction_vec_in_material_frame)]
+        self,
+        k: ArrayLike,
+        nu: ArrayLike,
+        k_repulsive: ArrayLike,
+        rod_one_direction_vec_in_material_frame: ArrayLike,
+        rod_two_direction_vec_in_material_frame: ArrayLike,
+        offset_btw_rods: ArrayLike,
+        **kwargs: Any,
+    ) -> None:
+        towards = [
+            np.array(each, dtype=np.float64).reshape(3, -1)
+            for each in (rod_one_direction_vec_in_material_frame, rod_two_direction_vec_in_material_frame)
+        ]
         self.towards = np.stack(towards).transpose(2, 0, 1)
-        self.laws = [np.broadcast_to(np.ravel(np.asarray(each, dtype=np.float64)), len(self.towards))
-                     for each in (k, nu, k_repulsive, offset_btw_rods)]  # fmt: skip
+        self.laws = [
+            np.broadcast_to(np.ravel(np.asarray(each, dtype=np.float64)), len(self.towards))
+            for each in (k, nu, k_repulsive, offset_btw_rods)
+        ]
         self._n_lowered = 0
 
-    def apply_forces(
-        self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
-    ) -> None:
+    def apply_forces(self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0) -> None:
         """Add forces and torques, as the compiled step does."""
         act_joint(self, system_one, index_one, system_two, index_two)
 
