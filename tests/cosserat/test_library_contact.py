@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import elastica_gym.cosserat as ea
-from elastica_gym.engine.surroundings import Contact
+from elastica_gym import engine
+from elastica_gym.engine import Contact, at_rest, build_model
 
 DT = 2.0**-16
 X, Y, Z = np.eye(3)
@@ -129,12 +130,12 @@ def test_a_heap_is_that_of_the_environments():
     """Which compares each pair of elements in other ways."""
     law = dict(stiffness=1e3, damping=0.5)
     sim, rods = heap(lambda _: [dict(k=1e3, nu=0.5)])
-    model, _ = ea.build_model([rod.as_continuum() for rod in rods], rod_contact=Contact(**law)), None
-    state, control = ea.at_rest(model, [rod.as_continuum() for rod in rods])
+    model, _ = build_model([rod.as_continuum() for rod in rods], rod_contact=Contact(**law)), None
+    state, control = at_rest(model, [rod.as_continuum() for rod in rods])
     state.v[:] = sim.simulation.state.v
     assert np.array_equal(state.x, sim.simulation.state.x)
     before = state.v.copy()
-    ea.advance(model, state, control, 0, 1, DT, 40)
+    engine.advance(model, state, control, 0, 1, DT, 40)
     advance(sim, 40)
     assert np.abs(state.v - before).max() > 0.1
     assert np.abs(state.x - sim.simulation.state.x).max() < 1e-12
