@@ -11,6 +11,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import urllib.parse
 from pathlib import Path
 
@@ -35,6 +36,9 @@ def main(arguments: list[str] | None = None) -> int:
     except ReplayError as error:
         print(f"replay: {error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("replay: interrupted", file=sys.stderr)
+        return 130
 
 
 class ReplayError(Exception):
@@ -93,23 +97,28 @@ def require_free(name: str, port: int) -> None:
 
 
 def run_viewer(arguments: list[str]) -> int:
-    """Run rerun's program until it ends or Ctrl-C, which takes it along."""
+    """Run rerun's program until it ends, or Ctrl-C or another signal ends it.
+
+    From before it starts, signals only set a flag: an exception could arise while the viewer is being started, and
+    leave it behind.
+    """
+    interrupted = threading.Event()
+    for name in {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal)):
+        signal.signal(getattr(signal, name), lambda *_: interrupted.set())
     # a session of its own: Ctrl-C reaches this script only, which then stops the viewer
     viewer = subprocess.Popen([*viewer_program(), *arguments], env=ENVIRONMENT, start_new_session=True)
-    for ending in {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal)):
-        signal.signal(getattr(signal, ending), signal.default_int_handler)
+    while viewer.poll() is None and not interrupted.wait(timeout=0.2):
+        pass
+    if not interrupted.is_set():
+        return viewer.returncode
+    viewer.terminate()
     try:
-        return viewer.wait()
-    except KeyboardInterrupt:
-        print("\nstopped", flush=True)
-        return 0
-    finally:
-        if viewer.poll() is None:
-            viewer.terminate()
-            try:
-                viewer.wait(timeout=5)
-            except subprocess.TimeoutExpired:
-                viewer.kill()
+        viewer.wait(timeout=5)
+    except subprocess.TimeoutExpired:
+        viewer.kill()
+        viewer.wait()
+    print("\nstopped", flush=True)
+    return 0
 
 
 def viewer_program() -> list[str]:
