@@ -163,12 +163,12 @@ def measure_arms(n_pairs: int) -> dict[str, Any]:
     sys.path.insert(0, str(ROOT))
     import numpy as np
 
-    from elastica_gym.bodies.muscles import N_ACTIVATIONS, couple_matrix
+    from elastica_gym.bodies.muscles import couple_matrix
     from tests.engine import oracle
     from tests.engine.scenes import ARMS_CONTACT, ARMS_MUSCLES, ARMS_STEP, GRAVITY, arms, ground, held
 
     rod = arms()
-    activations = np.random.default_rng(0).uniform(-1.0, 1.0, N_ACTIVATIONS)
+    activations = np.random.default_rng(0).uniform(-1.0, 1.0, ARMS_MUSCLES.n_activations)
     couple = np.tensordot(activations, couple_matrix(ARMS_MUSCLES, rod), axes=1)
     loads = {"gravity": GRAVITY, "planes": [ground()], "rod_contact": ARMS_CONTACT, "couple": couple}
     agreement = require_agreement("the arms", rod, ARMS_STEP, 1e-11, cylinders=[held(0.1)], **loads)

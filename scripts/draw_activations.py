@@ -11,7 +11,7 @@ import gymnasium
 import numpy as np
 
 import elastica_gym  # noqa: F401  registers the environments
-from elastica_gym.bodies.muscles import DIRECTIONS, LEVELS, N_ACTIVATIONS, N_ARMS, N_FUNCTIONS
+from elastica_gym.bodies.muscles import DIRECTIONS, LEVELS, N_FUNCTIONS, OCTOPUS
 from elastica_gym.console.bad_input import make_folder, require_extra, run_command
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ ENV = "elastica_gym/OctopusReach-v1"
 SECONDS = 0.4
 EFFECT = {"normal": "bends sideways", "binormal": "lifts", "tangent": "twists"}
 COLORS = ("#eb7f26", "#2f7fb8", "#1f7a72")
-ARM = 1
+ARM = "second"
 """The second arm, which is after the head"""
 
 
@@ -48,7 +48,7 @@ def draw() -> "Figure":
     axes = figure.subplots(len(DIRECTIONS), N_FUNCTIONS)
     for row, (direction, across) in enumerate(zip(DIRECTIONS, (2, 1, None), strict=True)):
         for column, (level, i) in enumerate(columns):
-            ax, number = axes[row, column], (row * N_ARMS + ARM) * N_FUNCTIONS + column
+            ax, number = axes[row, column], OCTOPUS.columns(direction, ARM)[column]
             if across is None:
                 for which, color in ((0, "0.7"), (1 + number, COLORS[level])):
                     ax.plot(np.degrees(rolls[which] - rolls[0]), color=color)
@@ -68,10 +68,10 @@ def draw() -> "Figure":
 
 def play() -> tuple[np.ndarray, np.ndarray]:
     """Return nodes ahead, up and to the right of the head [m], and the roll of elements [rad], with none and each."""
-    env = gymnasium.make_vec(ENV, num_envs=1 + N_ACTIVATIONS, spread="arc")
+    env = gymnasium.make_vec(ENV, num_envs=1 + OCTOPUS.n_activations, spread="arc")
     batch = env.unwrapped
     batch.reset(seed=[0] * batch.num_envs)  # type: ignore[attr-defined]
-    actions = np.concatenate([np.zeros((1, N_ACTIVATIONS)), np.eye(N_ACTIVATIONS)])
+    actions = np.concatenate([np.zeros((1, OCTOPUS.n_activations)), np.eye(OCTOPUS.n_activations)])
     for _ in range(round(SECONDS / batch.control_dt)):  # type: ignore[attr-defined]
         batch.step(actions)
     state, pose, body = batch.state, batch.pose, batch.body  # type: ignore[attr-defined]

@@ -45,7 +45,7 @@ def draw(body: Body) -> "Figure":
     axes = figure.subplots(len(DIRECTIONS), 1, sharex=True)
     for direction, ax in zip(DIRECTIONS, axes, strict=True):
         strength = 1e3 * np.repeat(muscles.magnitudes[direction], LEVELS)
-        for name, (begin, end) in zip(body.arms, muscles.arms, strict=True):
+        for name, (begin, end, _) in muscles.arms.items():
             along = np.linspace(0.0, 1.0, 400)
             draw_arm(ax, begin + along * (end - begin), strength[:, None] * basis(along, muscles.widths[direction]))
             ax.text(

@@ -1,6 +1,7 @@
 """What every animal has: rods in surroundings, muscles, and senses."""
 
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ from ..engine.kernels.math.vectors import column, plus, times, to_lab, vector
 from ..engine.model import Array, Index
 from ..engine.surroundings import Cylinder
 from .mirror import Mirror
-from .muscles import N_ACTIVATIONS, Muscles, activation_names, couple_matrix
+from .muscles import Muscles, couple_matrix
 
 
 class Senses(NamedTuple):
@@ -57,12 +58,10 @@ class Body:
         The free objects around it.
     model : Model
     muscles : Muscles
-    arms : tuple of str
-        Names of the two arms.
-    mirror : Mirror
+    mirror : Mirror, optional
         In which it is its own image.
     couples : Array
-        Couple in the slots of the Model by activation [N m], (42, 3, L).
+        Couple in the slots of the Model by activation [N m], (A, 3, L).
     senses : Senses
     sim_dt : float
         Time step of the physics unless another is asked for [s].
@@ -75,12 +74,31 @@ class Body:
     cylinders: tuple[Cylinder, ...] = ()
     model: Model
     muscles: Muscles
-    arms: tuple[str, str]
-    mirror: Mirror
+    mirror: Mirror | None = None
     couples: Array
     senses: Senses
     sim_dt: float
     settling: float = 0.0
+
+    @property
+    def n_activations(self) -> int:
+        """Number of activations A, the size of an action."""
+        return self.muscles.n_activations
+
+    @property
+    def activation_names(self) -> tuple[str, ...]:
+        """Name of each activation."""
+        return self.muscles.activation_names
+
+    def nodes(self, rod: int) -> slice:
+        """Return the slots of the nodes of a rod in the Model."""
+        start = int(self.model.first_slot[rod])
+        return slice(start, start + self.rods[rod].n_elements + 1)
+
+    def elements(self, rod: int) -> slice:
+        """Return the slots of the elements of a rod in the Model."""
+        start = int(self.model.first_slot[rod])
+        return slice(start, start + self.rods[rod].n_elements)
 
     @functools.cached_property
     def rest(self) -> State:
@@ -108,14 +126,14 @@ class Body:
             layout += [(f"object/{b}/velocity/{axis}", -20.0, 20.0) for axis in axes]
             layout += [(f"object/{b}/spin/{axis}", -50.0, 50.0) for axis in axes]
             layout += [(f"object/{b}/gap", -1.0, 4.0)]
-        return layout + [(f"activation/{name}", -1.0, 1.0) for name in activation_names(self.arms)]
+        return layout + [(f"activation/{name}", -1.0, 1.0) for name in self.activation_names]
 
 
-def couples_of(muscles: Muscles, rod: Rod, model: Model) -> Array:
-    """Return the couple in the slots of a model, whose first rod it is, by activation [N m], (42, 3, L)."""
-    start = int(model.first_slot[0])
-    couples = np.zeros((N_ACTIVATIONS, 3, model.mass.size))
-    couples[:, :, start : start + rod.n_elements - 1] = couple_matrix(muscles, rod)
+def couples_of(muscles: Muscles, rods: Sequence[Rod], model: Model) -> Array:
+    """Return the couple in the slots of a model of these rods, by activation [N m], (A, 3, L)."""
+    couples = np.zeros((muscles.n_activations, 3, model.mass.size))
+    for number, (rod, start) in enumerate(zip(rods, model.first_slot.tolist(), strict=True)):
+        couples[:, :, start : start + rod.n_elements - 1] = couple_matrix(muscles, rod, number)
     return couples
 
 
@@ -157,7 +175,7 @@ def make_pose(n_envs: int, n_objects: int) -> Pose:
 
 @stage
 def _command(activations, couples, out):
-    """Write the couples that activations (42,) command into ``out`` (3, L): a third of them acts in each direction."""
+    """Write the couples that activations (A,) command into ``out`` (3, L): a third of them acts in each direction."""
     slots, third = np.uint64(out.shape[1]), activations.size // 3
     for c in range(3):
         for k in range(slots):
@@ -170,7 +188,7 @@ def _command(activations, couples, out):
 
 @entry
 def activate(couples, activations, out):
-    """Write the couples that activations (B, 42) command into ``out`` (B, 3, L), environment by environment."""
+    """Write the couples that activations (B, A) command into ``out`` (B, 3, L), environment by environment."""
     for i in range(activations.shape[0]):
         _command(activations[i], couples, out[i])
 
@@ -311,7 +329,7 @@ def feel(model, state, levels, senses, pose, low, high, readings, envs):
     carries each patch of skin, over the weight of an equal share of the body. Where there are objects, the
     force with which they touch each patch, likewise; and of each its centre from the head in body lengths,
     axis, velocity in body lengths a second, angular velocity in rad/s, and the gap to the animal's surface
-    in body lengths. Last, the activations that the muscles have reached, ``levels`` (B, 42). In a loop over
+    in body lengths. Last, the activations that the muscles have reached, ``levels`` (B, A). In a loop over
     environments rather than in NumPy, whose sums may round differently with the size of the batch.
     """
     for e in range(envs.size):

@@ -99,7 +99,7 @@ def arm_elements(body: Body) -> Index:
 
     Not to be changed.
     """
-    ends = np.sort(np.array(body.muscles.arms), axis=1) * body.rods[0].n_elements
+    ends = np.sort([arm[:2] for arm in body.muscles.arms.values()], axis=1) * body.rods[0].n_elements
     return np.round(ends).astype(np.int64)
 
 

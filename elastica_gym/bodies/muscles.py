@@ -1,34 +1,44 @@
-"""Muscles: 42 activations in [-1, 1] in, couples along the body out.
+"""Muscles: activations in [-1, 1] in, couples along the body out.
 
-The body has two *arms* (a snake's front and rear half). In each of three directions, about the
-normal, the binormal and the tangent, an arm carries a hierarchy of Gaussian basis functions: level
-j has 2^j of them, so 1 + 2 + 4 = 7. Two arms, three directions and seven functions make the 42
-activations, in the order direction, arm, function: the top level first, and within a level from the
-arm's beginning to its end.
+A body has *arms* (a snake's are its front and rear half). In each of three directions, about the normal, the
+binormal and the tangent, an arm carries a hierarchy of Gaussian basis functions: level j has 2^j of them, so
+1 + 2 + 4 = 7. Each arm is driven by 3 x 7 = 21 activations, two arms by 42, in the order direction, arm, function:
+the top level first, and within a level from the arm's beginning to its end.
 
 A couple acts equally and oppositely on the two elements it joins, so muscles never push or spin the
 animal as a whole; they act on the ground only through its shape.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..engine import Rod
-from ..engine.model import Array
+from ..engine.model import Array, Index
 
 DIRECTIONS = ("normal", "binormal", "tangent")
 LEVELS = (1, 2, 4)
 N_FUNCTIONS = sum(LEVELS)
-N_ARMS = 2
-N_ACTIVATIONS = len(DIRECTIONS) * N_ARMS * N_FUNCTIONS
+"""Basis functions of an arm in each direction"""
 FIT_ITERATIONS = 1000
 """Iterations of the fit of activations to couples; the snake's converges to rounding in 600"""
 
 
+class Arm(NamedTuple):
+    """Where an arm lies."""
+
+    begin: float
+    """As a part of the rod's length"""
+    end: float
+    """Likewise; an arm whose begin is beyond its end runs backwards"""
+    rod: int = 0
+    """Number of the rod among the body's"""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Muscles:
-    """How strong an animal's muscles are, where its arms lie and how fast they act.
+    """The strength and speed of a body's muscles, and where its arms lie.
 
     Attributes
     ----------
@@ -36,17 +46,37 @@ class Muscles:
         Couple at full activation of each level, by direction [N m].
     widths : dict of str to tuple of float
         Width of the Gaussians of each level, by direction, for an arm of length 1.
-    arms : tuple of tuple of float
-        Begin and end of each arm as parts of the rod's length; a begin beyond the end runs backwards. A joint
-        at the end of one arm and the beginning of the next belongs to both.
+    arms : dict of str to Arm
+        Each arm by its name. A Voronoi point at the end of one arm and the beginning of the next belongs to both.
     activation_time : float
         Time constant with which a muscle's activation follows the commanded one [s].
     """
 
     magnitudes: dict[str, tuple[float, float, float]]
     widths: dict[str, tuple[float, float, float]]
-    arms: tuple[tuple[float, float], tuple[float, float]]
+    arms: dict[str, Arm]
     activation_time: float
+
+    @property
+    def n_activations(self) -> int:
+        """Number of activations A: 21 an arm."""
+        return len(DIRECTIONS) * len(self.arms) * N_FUNCTIONS
+
+    def columns(self, direction: str, arm: str) -> Index:
+        """Return where the activations of an arm in a direction are in an action, (7,); the next arm's come after."""
+        first = (DIRECTIONS.index(direction) * len(self.arms) + list(self.arms).index(arm)) * N_FUNCTIONS
+        return np.arange(first, first + N_FUNCTIONS)
+
+    @property
+    def activation_names(self) -> tuple[str, ...]:
+        """Name of each activation, as ``normal/front/1.0``: direction, arm, level and place."""
+        return tuple(
+            f"{direction}/{arm}/{level}.{i}"
+            for direction in DIRECTIONS
+            for arm in self.arms
+            for level, count in enumerate(LEVELS)
+            for i in range(count)
+        )
 
 
 SNAKE = Muscles(
@@ -56,7 +86,7 @@ SNAKE = Muscles(
         "tangent": (5e-4, 3.5e-4, 2e-4),
     },
     widths=dict.fromkeys(DIRECTIONS, (0.40, 0.25, 0.15)),
-    arms=((1.0, 0.5), (0.5, 0.0)),
+    arms={"front": Arm(1.0, 0.5), "rear": Arm(0.5, 0.0)},
     activation_time=0.06,
 )
 """The snake's: its arms are the front and the rear half, each from the head's side.
@@ -68,7 +98,7 @@ throw it off the ground. With all equally strong, exploration is mostly thrashin
 OCTOPUS = Muscles(
     magnitudes={"normal": (5.2, 4.16, 3.12), "binormal": (5.2, 4.16, 3.12), "tangent": (3.12, 2.08, 1.04)},
     widths={"normal": (0.40, 0.16, 0.10), "binormal": (0.40, 0.16, 0.10), "tangent": (0.30, 0.24, 0.20)},
-    arms=((50.0 / 120.0, 0.0), (70.0 / 120.0, 1.0)),
+    arms={"first": Arm(50.0 / 120.0, 0.0), "second": Arm(70.0 / 120.0, 1.0)},
     activation_time=0.06,
 )
 """The octopus's: its arms begin at the head. The widths of the 2020 hackathon, and 0.52 of its couples: then all of
@@ -94,29 +124,27 @@ def basis(s: Array, widths: tuple[float, float, float]) -> Array:
     return np.array(rows) * ((s > -1e-9) & (s < 1.0 + 1e-9))
 
 
-def couple_matrix(muscles: Muscles, rod: Rod) -> Array:
-    """Return the couple at each Voronoi point that each activation causes at 1 [N m], (42, 3, n - 1).
+def couple_matrix(muscles: Muscles, rod: Rod, number: int = 0) -> Array:
+    """Return the couple at each Voronoi point of a rod that each activation causes at 1 [N m], (A, 3, n - 1).
 
     The couple of the direction normal, binormal and tangent is the component along d1, d2 and d3.
+
+    Parameters
+    ----------
+    muscles : Muscles
+    rod : Rod
+    number : int
+        Its number among the body's rods; arms of other rods cause no couple in it.
     """
     ends = np.cumsum(rod.rest_length)[:-1] / rod.rest_length.sum()
-    matrix = np.zeros((len(DIRECTIONS), N_ARMS, N_FUNCTIONS, 3, rod.n_elements - 1))
+    matrix = np.zeros((len(DIRECTIONS), len(muscles.arms), N_FUNCTIONS, 3, rod.n_elements - 1))
     for d, direction in enumerate(DIRECTIONS):
         strength = np.repeat(muscles.magnitudes[direction], LEVELS)
-        for a, (begin, end) in enumerate(muscles.arms):
-            matrix[d, a, :, d] = strength[:, None] * basis((ends - begin) / (end - begin), muscles.widths[direction])
-    return matrix.reshape(N_ACTIVATIONS, 3, rod.n_elements - 1)
-
-
-def activation_names(arms: tuple[str, str]) -> tuple[str, ...]:
-    """Return the name of each activation, as ``normal/front/1.0``: direction, arm, level and place."""
-    return tuple(
-        f"{direction}/{arm}/{level}.{i}"
-        for direction in DIRECTIONS
-        for arm in arms
-        for level, count in enumerate(LEVELS)
-        for i in range(count)
-    )
+        for a, arm in enumerate(muscles.arms.values()):
+            if arm.rod == number:
+                places = (ends - arm.begin) / (arm.end - arm.begin)
+                matrix[d, a, :, d] = strength[:, None] * basis(places, muscles.widths[direction])
+    return matrix.reshape(muscles.n_activations, 3, rod.n_elements - 1)
 
 
 def activations_for(couple: Array, matrix: Array, direction: str = "normal") -> Array:
@@ -127,18 +155,18 @@ def activations_for(couple: Array, matrix: Array, direction: str = "normal") -> 
     couple : Array
         Wanted couples about one direction at Voronoi points [N m], (m, n - 1).
     matrix : Array
-        What `couple_matrix` returns, (42, 3, n - 1).
+        What `couple_matrix` returns, (A, 3, n - 1).
     direction : str
         One of `DIRECTIONS`; the activations of the others are zero.
 
     Returns
     -------
     Array
-        (m, 42), nearest in the sense of least squares within the bounds: by Nesterov's accelerated projected gradient
+        (m, A), nearest in the sense of least squares within the bounds: by Nesterov's accelerated projected gradient
         (Introductory Lectures on Convex Optimization, 2004, section 2.2.4), all profiles at once.
     """
     d = DIRECTIONS.index(direction)
-    chosen = np.arange(N_ACTIVATIONS).reshape(len(DIRECTIONS), -1)[d]
+    chosen = np.arange(len(matrix)).reshape(len(DIRECTIONS), -1)[d]
     functions = matrix[chosen, d]
     gram, wanted = functions @ functions.T, couple @ functions.T
     least, *_, largest = np.linalg.eigvalsh(gram)
@@ -148,6 +176,6 @@ def activations_for(couple: Array, matrix: Array, direction: str = "normal") -> 
     for _ in range(FIT_ITERATIONS):
         nearer = np.clip(ahead - (ahead @ gram - wanted) / largest, -1.0, 1.0)
         fitted, ahead = nearer, nearer + momentum * (nearer - fitted)
-    activations = np.zeros((len(couple), N_ACTIVATIONS))
+    activations = np.zeros((len(couple), len(matrix)))
     activations[:, chosen] = fitted
     return activations

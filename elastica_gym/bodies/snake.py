@@ -90,9 +90,8 @@ def snake(n_elements: int = 50) -> Body:
         rods=(rod,),
         model=model,
         muscles=SNAKE,
-        arms=("front", "rear"),
         mirror=Mirror(across="right", is_later=True),
-        couples=couples_of(SNAKE, rod, model),
+        couples=couples_of(SNAKE, [rod], model),
         senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
         sim_dt=min(SIM_DT, 0.94 * stable_time_step(rod)),
     )

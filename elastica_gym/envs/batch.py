@@ -13,7 +13,6 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ..bodies.body import activate, feel, make_pose
-from ..bodies.muscles import N_ACTIVATIONS, activation_names
 from ..engine import advance, at_rest
 from ..engine.jit.compiler import Bound
 from ..engine.model import Array
@@ -182,9 +181,9 @@ class BatchEnv(VectorEnv):
         self.observation_names = tuple(name for name, _, _ in layout)
         self._low, self._high = np.array([bounds for _, *bounds in layout], dtype=np.float32).T.copy()
         about: dict[str, Any] = {"mirror": self.body.mirror, "duration": self.duration}
-        most, muscles = np.ones(N_ACTIVATIONS, dtype=np.float32), activation_names(self.body.arms)
+        most = np.ones(self.body.n_activations, dtype=np.float32)
         self.single_observation_space = NamedBox(self._low, self._high, names=self.observation_names, **about)
-        self.single_action_space = NamedBox(-most, most, names=muscles, **about)
+        self.single_action_space = NamedBox(-most, most, names=self.body.activation_names, **about)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
 
@@ -196,8 +195,8 @@ class BatchEnv(VectorEnv):
         self.goal = np.zeros((n, self.task.goal_size))
         self.progress, self._progress_before = (np.zeros((n, len(self.task.progress_names))) for _ in range(2))
         self.elapsed = np.zeros(n, dtype=np.int64)
-        self.activations = np.zeros((n, N_ACTIVATIONS))
-        self.levels = np.zeros((n, N_ACTIVATIONS))
+        self.activations = np.zeros((n, self.body.n_activations))
+        self.levels = np.zeros((n, self.body.n_activations))
         self._observations = np.zeros((n, len(self.observation_names)), dtype=np.float32)
         self.integrator = Team(self.body.model, self.state, self.control, self.n_threads)
         self._feel = Bound(
@@ -261,7 +260,7 @@ class BatchEnv(VectorEnv):
         Parameters
         ----------
         actions : Array
-            Activations, (B, 42); clipped to [-1, 1].
+            Activations, (B, A); clipped to [-1, 1].
 
         Returns
         -------

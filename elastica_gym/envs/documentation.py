@@ -2,7 +2,6 @@
 
 import itertools
 
-from ..bodies.muscles import activation_names
 from .task import Task
 
 READINGS = {
@@ -36,7 +35,7 @@ def document(task: Task) -> str:
     return "\n".join(
         [
             *_section("Action"),
-            f"``Box(-1, 1, ({len(activation_names(body.arms))},), float32)``: the activations that the muscles are "
+            f"``Box(-1, 1, ({body.n_activations},), float32)``: the activations that the muscles are "
             "commanded to; see `elastica_gym.bodies.muscles`.",
             "",
             *_section("Observation"),

@@ -19,14 +19,14 @@ class NamedBox(Box):
         Least and largest values, (d,) float32.
     names : tuple of str
         What the d numbers are.
-    mirror : Mirror
+    mirror : Mirror or None
         In which the animal is its own image; ``mirror.image(names)`` says what its numbers become there.
     duration : float
         Simulated time of an episode [s], which ``time_left`` is a part of.
     """
 
     def __init__(
-        self, low: NDArray[Any], high: NDArray[Any], *, names: tuple[str, ...], mirror: Mirror, duration: float
+        self, low: NDArray[Any], high: NDArray[Any], *, names: tuple[str, ...], mirror: Mirror | None, duration: float
     ) -> None:
         super().__init__(low, high, dtype=low.dtype)
         self.names, self.mirror, self.duration = names, mirror, duration

@@ -10,7 +10,6 @@ from collections.abc import Callable
 import numpy as np
 
 from ..bodies.body import Body, activate
-from ..bodies.muscles import N_ACTIVATIONS, N_FUNCTIONS
 from ..engine import State, advance, at_rest
 from ..engine.model import Array
 
@@ -176,15 +175,16 @@ def holding(body: Body) -> tuple[State, Array]:
     The object is put into the bend of each arm, which is then bent at full strength; what it was bent for two seconds
     holds the object wrapped by more than 200 degrees (`tests/envs/test_senses.py`). Not to be changed.
     """
+    arms = list(body.muscles.arms)
     places = [(away, angle) if arm else (away, np.pi - angle) for arm in range(2) for away, angle in IN_THE_BEND]
     state, control = at_rest(body.model, body.rods, len(places), cylinders=body.cylinders)
-    levels = np.zeros((len(places), N_ACTIVATIONS))
+    levels = np.zeros((len(places), body.n_activations))
     for i, (away, angle) in enumerate(places):
         for field, resting in zip(state, body.rest, strict=True):
             field[i] = resting[0]
         if not _place(body, state, i, away, angle, clear=0.0):
             raise ValueError(f"an object {away} m from the head, {angle:.2f} rad to its right, stands in the animal")
-        levels[i, (i // len(IN_THE_BEND)) * N_FUNCTIONS :][:N_FUNCTIONS] = 1.0
+        levels[i, body.muscles.columns("normal", arms[i // len(IN_THE_BEND)])] = 1.0
     n_parts = 16
     for part in range(n_parts):
         activate(body.couples, levels * (part + 1) / n_parts, control.couple)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..bodies import octopus
-from ..bodies.muscles import DIRECTIONS, N_ARMS, N_FUNCTIONS, activation_names
+from ..bodies.muscles import DIRECTIONS, N_FUNCTIONS
 from ..bodies.octopus import MIDDLE, N_ELEMENTS
 from ..engine import advance, at_rest
 from ..engine.model import Array
@@ -150,7 +150,7 @@ class Environment:
             raise ValueError(f"target_position {self.target_position} is in the animal or within {CLEAR} m of it")
         # pairs that may touch are listed anew, since all has moved
         self._state.n_pairs[:] = -1
-        self._activations = np.zeros((len(DIRECTIONS), N_ARMS, N_FUNCTIONS))
+        self._activations = np.zeros((len(DIRECTIONS), len(self._body.muscles.arms), N_FUNCTIONS))
         self._moments, self._steps, self._started = [], 0, True
         self._keep()
         self._systems = [self._rod(), self._object()]
@@ -220,7 +220,7 @@ class Environment:
             target=None,
             target_radius=0.0,
             rewards={},
-            activation_names=activation_names(body.arms),
+            activation_names=body.activation_names,
             **series,
         )
 

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 import yaml
 
-from elastica_gym.bodies.muscles import DIRECTIONS, N_ARMS, N_FUNCTIONS
+from elastica_gym.bodies.muscles import N_FUNCTIONS
 
 from ..console.bad_input import BadInputError, choose
 from ..scripted import scripted_policy
@@ -30,7 +30,7 @@ class Policy(Protocol):
         """Begin one episode in each environment; `seeds` has one seed per environment."""
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
-        """Return the actions (n, 42) for `observations` (n, d) of the environment `batch`."""
+        """Return the actions (n, A) for `observations` (n, d) of the environment `batch`."""
 
 
 class ZeroPolicy:
@@ -71,7 +71,7 @@ class FullStrengthPolicy:
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
         """Return activations of -1 and 1."""
         if self._step % self.HOLD == 0:
-            groups = (len(DIRECTIONS) * N_ARMS, 1)
+            groups = (batch.body.n_activations // N_FUNCTIONS, 1)
             signs = np.stack([rng.choice([-1.0, 1.0], groups) for rng in self._generators])
             self._actions = np.broadcast_to(signs, (*signs.shape[:2], N_FUNCTIONS)).reshape(len(signs), -1)
         self._step += 1
@@ -84,7 +84,7 @@ class ScriptedPolicy:
     Parameters
     ----------
     script
-        From a batch, its actions (n, 42); by default the task's own.
+        From a batch, its actions (n, A); by default the task's own.
     """
 
     def __init__(self, script: Callable[[Any], np.ndarray] | None = None):

@@ -35,6 +35,8 @@ class _Image(nn.Module):
 
     def __init__(self, space: NamedBox):
         super().__init__()
+        if space.mirror is None:
+            raise ValueError("SymmetricPolicy needs an animal that is its own mirror image; this one has no mirror")
         index, sign = space.mirror.image(space.names)
         self.register_buffer("index", torch.as_tensor(index), persistent=False)
         self.register_buffer("sign", torch.as_tensor(sign, dtype=torch.float32), persistent=False)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bodies.body import Body
-from ..bodies.muscles import N_ACTIVATIONS, N_ARMS, N_FUNCTIONS, activations_for, couple_matrix
+from ..bodies.muscles import N_FUNCTIONS, OCTOPUS, activations_for, couple_matrix
 from ..engine import Rod, Wave
 from ..engine.model import Array
 
@@ -115,7 +115,7 @@ OCTOPUS_STROKES = {
 """The scripted crawls of the octopus: period [s], and offset, sine and cosine of six activations of both arms alike,
 the first three functions about the normal and about the binormal. The means of 240 trials each of CMA-ES on the way
 made in 6 s without toppling, to the left with periods from 0.8 s"""
-OCTOPUS_FUNCTIONS = (0, 1, 2, 14, 15, 16)
+OCTOPUS_FUNCTIONS = np.concatenate([OCTOPUS.columns(direction, "first")[:3] for direction in ("normal", "binormal")])
 """The first arm's activations that a stroke plays"""
 
 
@@ -136,7 +136,7 @@ def octopus_crawl(env: "BatchEnv", angle: Array) -> Array:
 
 
 def _stroke(env: "BatchEnv", period: float, table: tuple[tuple[float, ...], ...]) -> Array:
-    return play_stroke(env, np.full(env.num_envs, period), [np.array(table)] * N_ARMS)
+    return play_stroke(env, np.full(env.num_envs, period), [np.array(table)] * len(env.body.muscles.arms))
 
 
 def play_stroke(env: "BatchEnv", period: Array, tables: Sequence[Array]) -> Array:
@@ -154,11 +154,11 @@ def play_stroke(env: "BatchEnv", period: Array, tables: Sequence[Array]) -> Arra
     """
     # the first control step begins at phase zero
     phase = (2.0 * np.pi * env.elapsed * env.control_dt / period)[:, None]
-    actions = np.zeros((env.num_envs, N_ACTIVATIONS))
+    actions = np.zeros((env.num_envs, env.body.n_activations))
     for arm, table in enumerate(tables):
         offset, sine, cosine = np.moveaxis(table, -2, 0)
         level = np.clip(offset + sine * np.sin(phase) + cosine * np.cos(phase), -1.0, 1.0)
-        actions[:, np.array(OCTOPUS_FUNCTIONS) + arm * N_FUNCTIONS] = level
+        actions[:, OCTOPUS_FUNCTIONS + arm * N_FUNCTIONS] = level
     return actions
 
 
@@ -170,7 +170,7 @@ def octopus_reach(env: "BatchEnv", angle: Array) -> Array:
     """Return the actions of a crawl to what stands to a side; to what is ahead or behind, an arm bends, (B, 42)."""
     actions = octopus_crawl(env, angle)
     for rows, arm in ((np.abs(angle) < 0.25 * np.pi, 1), (np.abs(angle) > 0.75 * np.pi, 0)):
-        bend = np.zeros(N_ACTIVATIONS)
+        bend = np.zeros(env.body.n_activations)
         bend[arm * N_FUNCTIONS] = SWING
         actions[rows] = np.sign(angle[rows])[:, None] * bend
     return actions

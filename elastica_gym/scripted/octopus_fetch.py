@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bodies.muscles import N_ACTIVATIONS, N_FUNCTIONS
+from ..bodies.muscles import N_FUNCTIONS, OCTOPUS
 from ..bodies.octopus import BASE_RADIUS, OBJECT_LENGTH, OBJECT_RADIUS
 from ..engine.model import Array, Index
 from ..envs.handling import now
@@ -27,11 +27,11 @@ VELOCITIES, LEVELS, GOAL, HOME = slice(33, 66), slice(161, 203), slice(206, 208)
 """Where observations have what the script sees, see `elastica_gym.envs.tasks.octopus_fetch`"""
 HEAD_NODE = 5
 """Which of the nodes seen is the head's centre"""
-STROKING = np.array(OCTOPUS_FUNCTIONS)
+STROKING = OCTOPUS_FUNCTIONS
 """The first arm's activations that a stroke plays"""
-BENDING = np.arange(N_FUNCTIONS)
+BENDING = OCTOPUS.columns("normal", "first")
 """The first arm's activations that bend it sideways"""
-LIFTING = np.array([14, 15, 16])
+LIFTING = OCTOPUS.columns("binormal", "first")[:3]
 """Its activations of the first three functions that lift it"""
 STEERING = 0.5
 """Angle off course at which one arm rests, and the other turns the animal [rad]"""
@@ -244,7 +244,7 @@ def _play(time: Array, first: Array, second: Array) -> Array:
     """Return the actions of the stroke to the right, each arm's times a factor (B,), (B, 42)."""
     period, table = OCTOPUS_STROKES["right"]
     level = np.clip(_wave(time, np.full(len(time), period), np.array(table)), -1.0, 1.0)
-    actions = np.zeros((len(time), N_ACTIVATIONS))
+    actions = np.zeros((len(time), OCTOPUS.n_activations))
     actions[:, STROKING], actions[:, STROKING + N_FUNCTIONS] = first[:, None] * level, second[:, None] * level
     return actions
 
@@ -260,7 +260,7 @@ def bend(sight: Sight, arm: Index) -> Array:
     columns = BENDING + arm[:, None] * N_FUNCTIONS
     level = np.take_along_axis(sight.levels, columns, axis=1).mean(axis=1)
     level = np.maximum(level + np.where(sight.tilt > LEANING, -RAMP, RAMP), LEAST_BEND)
-    actions = np.zeros((len(arm), N_ACTIVATIONS))
+    actions = np.zeros((len(arm), OCTOPUS.n_activations))
     np.put_along_axis(actions, columns, np.minimum(level, 1.0)[:, None], axis=1)
     return actions
 
@@ -278,7 +278,7 @@ def carry(way: Array, time: Array, arm: Index, homeward: Gait = HOMEWARD) -> Arr
     hurried += np.clip(off, -1.0, 1.0)[:, None] * np.array(homeward.steering)
     is_hurried = (np.abs(off) < homeward.width)[:, None]
     level = np.clip(np.where(is_hurried, hurried, _wave(time, periods[best], tables[best])), -1.0, 1.0)
-    actions = np.zeros((len(arm), N_ACTIVATIONS))
+    actions = np.zeros((len(arm), OCTOPUS.n_activations))
     own, other = arm[:, None] * N_FUNCTIONS, (1 - arm)[:, None] * N_FUNCTIONS
     np.put_along_axis(actions, BENDING + own, 1.0, axis=1)
     np.put_along_axis(actions, STROKING + other, level[:, :6], axis=1)

@@ -10,7 +10,6 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from ..bodies.body import Body, Pose
-from ..bodies.muscles import activation_names
 from ..engine.model import Array, Index, State
 
 HOME_RADIUS = 0.1
@@ -88,7 +87,7 @@ class Rollout:
     rewards : dict of str to Array
         Weighted reward of each term, zero at the start, (T,) each.
     activations : Array
-        Activations applied during the step, (T, 42).
+        Activations applied during the step, (T, A).
     activation_names : tuple of str
         Name of each activation, as ``direction/arm/place``.
     """
@@ -254,7 +253,7 @@ class Recorder:
             target_radius=0.05 * env.body.senses.length,
             home=home if home.size else None,
             rewards={term: np.array([r.get(term, 0.0) for r in self._rewards]) for term in terms},
-            activation_names=activation_names(env.body.arms),
+            activation_names=env.body.activation_names,
             **series,
         )
 

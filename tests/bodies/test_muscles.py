@@ -6,10 +6,8 @@ import pytest
 from elastica_gym.bodies import octopus, snake
 from elastica_gym.bodies.muscles import (
     DIRECTIONS,
-    N_ACTIVATIONS,
     OCTOPUS,
     SNAKE,
-    activation_names,
     activations_for,
     basis,
     couple_matrix,
@@ -21,15 +19,15 @@ MATRIX = couple_matrix(SNAKE, ROD)
 
 
 def test_order_is_direction_arm_level_place():
-    names = activation_names(("front", "rear"))
-    assert len(names) == len(set(names)) == N_ACTIVATIONS == 42
+    names = SNAKE.activation_names
+    assert len(names) == len(set(names)) == SNAKE.n_activations == 42
     assert names[0] == "normal/front/0.0" and names[7] == "normal/rear/0.0"
     assert names[14].startswith("binormal/front") and names[41] == "tangent/rear/2.3"
 
 
 def test_each_activation_acts_in_its_direction_and_arm_only():
     middle = 24
-    for a, name in enumerate(activation_names(("front", "rear"))):
+    for a, name in enumerate(SNAKE.activation_names):
         direction, arm, _ = name.split("/")
         for d, other in enumerate(DIRECTIONS):
             assert MATRIX[a, d].any() == (other == direction)

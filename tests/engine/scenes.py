@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elastica_gym.bodies.muscles import DIRECTIONS, Muscles
+from elastica_gym.bodies.muscles import DIRECTIONS, Arm, Muscles
 from elastica_gym.engine import Rod, State, Wave
 from elastica_gym.engine.model import Array, Model
 from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
@@ -75,7 +75,7 @@ ARMS_STEP = 4e-5
 ARMS_MUSCLES = Muscles(
     magnitudes=dict.fromkeys(DIRECTIONS, (0.3, 0.2, 0.1)),
     widths=dict.fromkeys(DIRECTIONS, (0.40, 0.25, 0.15)),
-    arms=((0.4, 0.0), (0.6, 1.0)),
+    arms={"first": Arm(0.4, 0.0), "second": Arm(0.6, 1.0)},
     activation_time=0.0,
 )
 ARMS_CONTACT = Contact(stiffness=1e4, damping=5.0, friction=0.4, slip_damping=20.0)

@@ -10,7 +10,6 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 
 import elastica_gym  # noqa: F401
-from elastica_gym.bodies.muscles import activation_names
 from elastica_gym.envs.batch import CLOCK_PERIOD
 from elastica_gym.rl.rhythm import RhythmicPolicy
 from elastica_gym.rl.symmetry import SymmetricPolicy
@@ -21,7 +20,7 @@ TRAINED = (*IDS, "elastica_gym/SnakeSteer-v1")
 
 
 def mirrored(envs, values, names=None):
-    index, sign = envs.body.mirror.image(names or activation_names(envs.body.arms))
+    index, sign = envs.body.mirror.image(names or envs.body.activation_names)
     return values[..., index] * sign
 
 
