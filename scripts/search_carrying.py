@@ -15,7 +15,6 @@ from gymnasium.vector import AutoresetMode
 
 import elastica_gym  # noqa: F401  registers the environments
 from elastica_gym.console.bad_input import BadInputError, check_bounds, make_folder, require_extra, run_command
-from elastica_gym.envs.handling import now
 from elastica_gym.scripted.octopus_fetch import HOME, HOMEWARD, Gait, carry, fetch, see
 
 FETCH = "elastica_gym/OctopusFetch-v1"
@@ -65,7 +64,7 @@ def grabs(arguments: Arguments) -> list[Any]:
     for _ in track(range(batch.max_episode_steps), "grabbing"):
         _, _, terminated, truncated, _ = batch.step(fetch(batch))
         goes_on &= ~(terminated | truncated)
-        has_grabbed = goes_on & (now(batch.situation()).grabbed == 1.0)
+        has_grabbed = goes_on & (batch.situation().progress.grabbed == 1.0)
         if has_grabbed.any():
             saved = batch.get_state()
             found += [each_of(saved, i) for i in np.flatnonzero(has_grabbed)]
@@ -123,7 +122,7 @@ def worth(batch: Any, gaits: list[Gait], begin: list[Any]) -> tuple[np.ndarray, 
         observations, _, terminated, _, info = batch.step(actions_of(batch, gaits))
         away = np.linalg.norm(observations[:, HOME].astype(np.float64), axis=1)
         done = goes_on & info["is_success"]
-        failed = goes_on & ~done & (terminated | (now(batch.situation()).grabbed == 0.0))
+        failed = goes_on & ~done & (terminated | (batch.situation().progress.grabbed == 0.0))
         values = np.where(goes_on, 0.1 - away, values)
         values[done] = 0.3 + 0.2 * (1.0 - step / last)
         values[failed] = -0.5 - away[failed] + 0.2 * step / last

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from nbclient import NotebookClient
 
-from elastica_gym.envs import task_of
+from elastica_gym.bodies import octopus
+from elastica_gym.envs.tasks.octopus_fetch import TASK
 from tests.agents.commands import ROOT
 
 SCRIPTS = ROOT / "scripts"
@@ -60,7 +61,6 @@ def test_the_notebooks_policy_is_the_scripts():
 
 
 def test_the_policy_sees_the_object_where_it_says():
-    script, names = load(SCRIPTS / "starter_kit.py"), task_of("elastica_gym/OctopusFetch-v1").goal_names
-    first = 210 - len(names)
-    assert first + names.index("goal/forward") == script.SEEN_FORWARD
-    assert first + names.index("goal/right") == script.SEEN_RIGHT
+    script, names = load(SCRIPTS / "starter_kit.py"), TASK.layout(octopus()).names
+    assert names.index("goal/forward") == script.SEEN_FORWARD
+    assert names.index("goal/right") == script.SEEN_RIGHT

@@ -15,6 +15,7 @@ from ..engine.model import Array, Index
 from ..engine.surroundings import Cylinder
 from .mirror import Mirror
 from .muscles import Muscles, couple_matrix
+from .observation import AXES, Block, single
 
 
 class Senses(NamedTuple):
@@ -65,6 +66,10 @@ class Body:
     senses : Senses
     sim_dt : float
         Time step of the physics unless another is asked for [s].
+    frame : str
+        What forward and right are, in words.
+    order : str
+        The order in which places along the body are counted, in words.
     settling : float
         Time in which the body as described comes to rest on the ground [s].
     """
@@ -78,6 +83,8 @@ class Body:
     couples: Array
     senses: Senses
     sim_dt: float
+    frame: str
+    order: str
     settling: float = 0.0
 
     @property
@@ -109,24 +116,41 @@ class Body:
             moving[:] = 0
         return state
 
-    def readings(self) -> list[tuple[str, float, float]]:
-        """Return the name and the least and largest value of each number that `feel` writes."""
-        s, axes = self.senses, ("forward", "up", "right")
-        nodes, joints, patches = range(s.nodes.size), range(s.joints.size), range(s.skin.size - 1)
-        layout = [(f"position/{p}/{axis}", -1.0, 1.0) for p in nodes for axis in axes]
-        layout += [(f"velocity/{p}/{axis}", -20.0, 20.0) for p in nodes for axis in axes]
-        layout += [(f"curvature/{j}/{axis}", -10.0, 10.0) for j in joints for axis in ("normal", "binormal", "twist")]
-        layout += [(f"roll/{j}/{axis}", -1.0, 1.0) for j in joints for axis in ("normal", "binormal")]
-        layout += [(f"contact/{c}", 0.0, 50.0) for c in patches]
+    def blocks(self) -> list[Block]:
+        """Return the blocks of the observation that `observe` writes, in its order."""
+        s, axes = self.senses, AXES
+        nodes, places, patches = s.nodes.size, s.joints.size, s.skin.size - 1
+
+        def each(count: int, parts: Sequence[str]) -> tuple[str, ...]:
+            return tuple(f"{k}/{part}" for k in range(count) for part in parts)
+
+        order, share = self.order, f"1/{patches} of the weight"
+        numbered, frame = tuple(map(str, range(patches))), ", ".join(axes)
+        blocks = [
+            Block("position", each(nodes, axes), -1.0, 1.0, "body length",
+                  f"position of {nodes} nodes, {order}, from the centre of mass: {frame}"),
+            Block("velocity", each(nodes, axes), -20.0, 20.0, "body lengths/s", f"their velocity: {frame} of each"),
+            Block("curvature", each(places, ("normal", "binormal", "twist")), -10.0, 10.0, f"{s.curvature_scale:g}/m",
+                  f"curvature about the normal and binormal, and twist, at {places} places, {order}"),
+            Block("roll", each(places, ("normal", "binormal")), -1.0, 1.0, "1",
+                  "up component of normal and binormal there: how the body has rolled"),
+            Block("contact", numbered, 0.0, 50.0, share,
+                  f"force with which the ground carries each of {patches} parts, {order}"),
+        ]  # fmt: skip
         if self.cylinders:
-            layout += [(f"touch/{c}", 0.0, 50.0) for c in patches]
+            blocks.append(Block("touch", numbered, 0.0, 50.0, share, "force with which objects touch each of them"))
         for b in range(len(self.cylinders)):
-            layout += [(f"object/{b}/position/{axis}", -4.0, 4.0) for axis in axes]
-            layout += [(f"object/{b}/axis/{axis}", -1.0, 1.0) for axis in axes]
-            layout += [(f"object/{b}/velocity/{axis}", -20.0, 20.0) for axis in axes]
-            layout += [(f"object/{b}/spin/{axis}", -50.0, 50.0) for axis in axes]
-            layout += [(f"object/{b}/gap", -1.0, 4.0)]
-        return layout + [(f"activation/{name}", -1.0, 1.0) for name in self.activation_names]
+            thing = f"object/{b}"
+            blocks += [
+                Block(f"{thing}/position", axes, -4.0, 4.0, "body length", f"object's centre, from the head: {frame}"),
+                Block(f"{thing}/axis", axes, -1.0, 1.0, "1", f"its axis, from foot to top at the start: {frame}"),
+                Block(f"{thing}/velocity", axes, -20.0, 20.0, "body lengths/s", f"its velocity: {frame}"),
+                Block(f"{thing}/spin", axes, -50.0, 50.0, "rad/s", f"its angular velocity: about {frame}"),
+                single(f"{thing}/gap", -1.0, 4.0, "body length",
+                       "gap between its surface and the animal's, negative where they overlap"),
+            ]  # fmt: skip
+        meaning = "activation that each muscle has reached, in the order of the actions"
+        return [*blocks, Block("activation", self.activation_names, -1.0, 1.0, "1", meaning)]
 
 
 def couples_of(muscles: Muscles, rods: Sequence[Rod], model: Model) -> Array:
@@ -235,7 +259,7 @@ def _patches(row, at, force, skin, scale):
 
 
 @inline
-def _feel_object(model, state, i, b, pose, row, at, inv_length):
+def _observe_object(model, state, i, b, pose, row, at, inv_length):
     """Compute the pose of an object, and write its readings."""
     hx, hz = pose.heading[i, 0], pose.heading[i, 1]
     place, axis = vector(state.body_x[i, b]), vector(state.body_Q[i, b, 2])
@@ -309,7 +333,7 @@ def _read(model, state, levels, senses, i, pose, row):
         _patches(row, at, state.body_touch[i], senses.skin, n_skin / senses.weight)
         at += n_skin
     for b in range(bodies.mass.size):
-        _feel_object(model, state, i, b, pose, row, at, inv_length)
+        _observe_object(model, state, i, b, pose, row, at, inv_length)
         at += 13
     for a in range(levels.shape[1]):
         row[at + a] = levels[i, a]
@@ -317,7 +341,7 @@ def _read(model, state, levels, senses, i, pose, row):
 
 
 @entry
-def feel(model, state, levels, senses, pose, low, high, readings, envs):
+def observe(model, state, levels, senses, pose, low, high, readings, envs):
     """Compute the pose and the readings (B, R or more) of some environments (E,), in the frame of their headings.
 
     Readings are clipped to their least and largest values (R or more,). Where the simulation has diverged, pose and

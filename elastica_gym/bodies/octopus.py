@@ -148,6 +148,9 @@ def octopus() -> Body:
         model=model,
         muscles=OCTOPUS,
         mirror=Mirror(across="forward", arms=("first", "second")),
+        frame="forward is the horizontal direction of the head's axis, from the first arm to the second; at rest the "
+        "arms point half to the left",
+        order="tip to tip",
         couples=couples_of(OCTOPUS, [rod], model),
         sim_dt=SIM_DT,
         settling=1.0,

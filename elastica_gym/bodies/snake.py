@@ -91,6 +91,8 @@ def snake(n_elements: int = 50) -> Body:
         model=model,
         muscles=SNAKE,
         mirror=Mirror(across="right", is_later=True),
+        frame="forward is the horizontal direction from the middle of the rear half to that of the front half",
+        order="tail to head",
         couples=couples_of(SNAKE, [rod], model),
         senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
         sim_dt=min(SIM_DT, 0.94 * stable_time_step(rod)),

@@ -12,7 +12,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from ..bodies.body import activate, feel, make_pose
+from ..bodies.body import activate, make_pose, observe
 from ..engine import advance, at_rest
 from ..engine.jit.compiler import Bound
 from ..engine.model import Array
@@ -20,7 +20,7 @@ from ..engine.rod import require_positive, require_stable
 from ..engine.stability import require_stable_model
 from ..engine.threads import Team, available_cpus
 from .spaces import NamedBox
-from .task import Mask, Situation, Task, TerminationReason
+from .task import CLOCK_PERIOD, Mask, Situation, Task, TerminationReason
 
 if TYPE_CHECKING:
     from ..viz import View
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 CONTROL_DT = 0.05
 """Duration of a control step unless another is asked for [s]"""
-CLOCK_PERIOD = 1.0
-"""Period of the clock that animals feel [s]"""
 RENDER_MODES = ("rgb_array",)
 """Ways to draw; of one animal, Gymnasium's wrappers show or collect the pictures"""
 
@@ -177,9 +175,8 @@ class BatchEnv(VectorEnv):
             self.max_episode_steps = min(self._n_steps, max_episode_steps)
 
     def _make_spaces(self) -> None:
-        layout = self.task.observations(self.body)
-        self.observation_names = tuple(name for name, _, _ in layout)
-        self._low, self._high = np.array([bounds for _, *bounds in layout], dtype=np.float32).T.copy()
+        self.layout = self.task.layout(self.body)
+        self.observation_names, self._low, self._high = self.layout.names, self.layout.low, self.layout.high
         about: dict[str, Any] = {"mirror": self.body.mirror, "duration": self.duration}
         most = np.ones(self.body.n_activations, dtype=np.float32)
         self.single_observation_space = NamedBox(self._low, self._high, names=self.observation_names, **about)
@@ -192,15 +189,15 @@ class BatchEnv(VectorEnv):
         n_objects = len(self.body.cylinders)
         self.state, self.control = at_rest(self.body.model, self.body.rods, n, cylinders=self.body.cylinders)
         self.pose, self._before = make_pose(n, n_objects), make_pose(n, n_objects)
-        self.goal = np.zeros((n, self.task.goal_size))
-        self.progress, self._progress_before = (np.zeros((n, len(self.task.progress_names))) for _ in range(2))
+        self.goal = np.zeros((n, len(self.task.goal_type._fields)))
+        self.progress, self._progress_before = (np.zeros((n, len(self.task.progress_type._fields))) for _ in range(2))
         self.elapsed = np.zeros(n, dtype=np.int64)
         self.activations = np.zeros((n, self.body.n_activations))
         self.levels = np.zeros((n, self.body.n_activations))
         self._observations = np.zeros((n, len(self.observation_names)), dtype=np.float32)
         self.integrator = Team(self.body.model, self.state, self.control, self.n_threads)
-        self._feel = Bound(
-            feel,
+        self._sense = Bound(
+            observe,
             self.body.model,
             self.state,
             self.levels,
@@ -281,7 +278,7 @@ class BatchEnv(VectorEnv):
         self._advance()
         now, sound = self.situation(), self.pose.sound == 1
         self._follow(now, sound)
-        rewards, info = self._judge(now, sound)
+        rewards, info = self._compute_rewards(now, sound)
         ends = {name: failed(now) for name, failed in self.task.failures.items()}
         ends |= {"success": info["is_success"] & self.task.ends_on_success, "diverged": ~sound}
         terminated = functools.reduce(np.logical_or, ends.values())
@@ -353,7 +350,7 @@ class BatchEnv(VectorEnv):
         values.clip(-1.0, 1.0, out=self.activations)
 
     def _advance(self) -> None:
-        """Move the animals, and feel where they are."""
+        """Move the animals, and observe them."""
         for old, new in zip(self._before, self.pose, strict=True):
             old[...] = new
         self._progress_before[:] = self.progress
@@ -362,11 +359,12 @@ class BatchEnv(VectorEnv):
         tau = self.body.muscles.activation_time
         self.levels += (self.activations - self.levels) * (1.0 - np.exp(-self.control_dt / tau))
         self.elapsed += 1
-        self.integrator.advance(self.num_envs, self.sim_dt, self.n_substeps, self._feel)
+        self.integrator.advance(self.num_envs, self.sim_dt, self.n_substeps, self._sense)
 
     def _follow(self, now: Situation, where: Mask) -> None:
         """Follow the episodes of some environments."""
-        np.copyto(self.progress, self.task.follow(now, self.state), where=where[:, None])
+        for column, value in zip(self.progress.T, self.task.follow(now, self.state), strict=True):
+            np.copyto(column, value, where=where)
 
     @property
     def observations(self) -> Observations:
@@ -379,16 +377,16 @@ class BatchEnv(VectorEnv):
         return Situation(
             self.pose,
             self._before,
-            self.goal,
-            self.progress,
-            self._progress_before,
+            self.task.goal_type(*self.goal.T),
+            self.task.progress_type(*self.progress.T),
+            self.task.progress_type(*self._progress_before.T),
             self.activations,
             left,
             self.control_dt,
             self.body,
         )
 
-    def _judge(self, now: Situation, sound: Mask) -> tuple[Array, dict[str, Any]]:
+    def _compute_rewards(self, now: Situation, sound: Mask) -> tuple[Array, dict[str, Any]]:
         """Return the rewards and an info with each of their terms; where physics has failed, only the penalty."""
         rewards, info = np.zeros(self.num_envs), {}
         for name, term in self.task.reward_terms.items():
@@ -412,9 +410,12 @@ class BatchEnv(VectorEnv):
     def _observe(self, now: Situation, where: Mask) -> None:
         """Write what some environments observe beside what is felt; the others keep what they observed last."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
-        goal, wanted = self.task.see_goal(now), (self.num_envs, len(self.task.goal_names))
+        goal = self.task.observe_goal(now)
+        wanted = (self.num_envs, sum(len(block.parts) for block in self.task.goal_blocks))
         if goal.shape != wanted:
-            raise ValueError(f"see_goal of {self.task.name} must return {wanted}, as goal_names says, not {goal.shape}")
+            raise ValueError(
+                f"observe_goal of {self.task.name} must return {wanted}, as goal_blocks says, not {goal.shape}"
+            )
         columns = np.concatenate(
             [np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None], goal], axis=1, dtype=np.float32
         )
@@ -452,12 +453,12 @@ class BatchEnv(VectorEnv):
             # a step of no duration moves nothing, and computes curvature and contact for the senses
             advance(self.body.model, self.state, self.control, i, i + 1, 0.0, 1)
             self.state.step[i] = 0
-        self._feel(begun)
+        self._sense(begun)
         for old, new in zip(self._before, self.pose, strict=True):
             old[begun] = new[begun]
         now = self.situation()
         for i in begun.tolist():
-            self.goal[i] = self.task.draw_goal(self._generators[i], now.only(slice(i, i + 1)))
+            self.goal[i] = self.task.sample_goal(self._generators[i], now.only(slice(i, i + 1)))
         self.progress[begun] = 0.0
         self._follow(now, mask)
         self._progress_before[begun] = self.progress[begun]
@@ -555,7 +556,7 @@ class BatchEnv(VectorEnv):
     @property
     def target(self) -> Array | None:
         """The targets' positions in the lab [m], (B, 3), or None where the task has none."""
-        return self.task.target(self.goal)
+        return self.task.target(self.task.goal_type(*self.goal.T))
 
 
 _EPISODE_STATE = (

@@ -1,90 +1,141 @@
-"""The specification of a task, written from its declaration."""
+"""The page of an environment, in Markdown, written from the declaration of its task and its body."""
 
-import itertools
+import functools
+import inspect
+from collections.abc import Callable, Iterator
+from typing import Any
 
-from .task import Task
+from ..bodies.body import Body
+from ..bodies.muscles import DIRECTIONS, N_FUNCTIONS
+from .starts import draw_start, with_object_held
+from .task import Task, TerminationReason
 
-READINGS = {
-    "position": ("position of {n} nodes from the centre of mass", "body length"),
-    "velocity": ("velocity of {n} nodes", "body lengths/s"),
-    "curvature": ("curvature about the normal and binormal, and twist, at {n} places", "10/m"),
-    "roll": ("up component of normal and binormal at {n} places", "1"),
-    "contact": ("force with which the ground carries each of {n} parts", "an equal share of the weight"),
-    "touch": ("force with which objects touch each of {n} parts", "an equal share of the weight"),
-    "object/position": ("position of an object's centre from the head", "body length"),
-    "object/axis": ("unit vector along its axis", "1"),
-    "object/velocity": ("its velocity", "body lengths/s"),
-    "object/spin": ("its angular velocity", "rad/s"),
-    "object/gap": ("its gap to the body's surface, negative where they overlap", "body length"),
-    "activation": ("activation that each muscle has reached", "1"),
-    "clock": ("sine and cosine of a clock with a period of 1 s", "1"),
-    "time_left": ("part of the episode that is left", "1"),
-}
-"""By kind, what observations of every task mean, and their unit"""
+EFFECTS = {"normal": "bends sideways", "binormal": "lifts", "tangent": "twists"}
+"""What muscles of each direction do"""
+CONTROL_STEP = 0.05
+"""Duration of a control step unless another is asked for [s]"""
 
 
 def document(task: Task) -> str:
-    """Return what a task observes, is rewarded for, and ends with, as tables in Markdown."""
+    """Return the specification of a task: action, observation, rewards, start and end, as tables in Markdown."""
     body = task.make_body()
-    weights = [f"| {name} | {weight:g} |" for name, weight in task.reward_weights.items()]
-    reasons = [
-        f"{number} {name}"
-        for number, name in enumerate(task.termination_reasons)
-        if name != "success" or task.ends_on_success
+    about, _, history = task.description.partition("Version history\n---------------\n")
+    title, _, text = about.strip().partition("\n")
+    parts = [
+        f"# {task.name}",
+        _sentence(title.partition(": ")[2] or title),
+        text.strip(),
+        *_action(body),
+        *_observation(task, body),
+        *_rewards(task),
+        *_start(task),
+        *_end(task, body),
+        "## Arguments",
+        "Those of `elastica_gym.envs.BatchEnv`: ``control_dt``, ``sim_dt`` "
+        f"({body.sim_dt:g} s), ``duration``, ``max_episode_steps``, ``n_threads``, ``weights``, ``spread``, "
+        "``body_kwargs``, ``render_mode``, ``render_size``; and of `make_vec` ``autoreset_mode``.",
     ]
-    return "\n".join(
-        [
-            *_section("Action"),
-            f"``Box(-1, 1, ({body.n_activations},), float32)``: the activations that the muscles are "
-            "commanded to; see `elastica_gym.bodies.muscles`.",
-            "",
-            *_section("Observation"),
-            "``Box(float32)``, clipped to its range.",
-            "",
-            "| index | meaning | unit | range |",
-            "|---|---|---|---|",
-            *_rows(task.observations(body)),
-            "",
-            *_section("Rewards"),
-            "The sum of these terms, each of which is in the info as ``reward_<term>`` with its weight:",
-            "",
-            "| term | weight |",
-            "|---|---|",
-            *weights,
-            "",
-            "The info also has ``distance`` [m]; ``is_success``; and",
-            f"``termination_reason``, a number: {', '.join(reasons[:-1])} or {reasons[-1]}.",
-            "",
-            *_section("Starting state"),
-            f"``spread`` is one of {', '.join(task.starts)}.",
-            "",
-            *_section("Episode end"),
-            f"Truncated after {task.duration:g} s.",
-            "",
-        ]
+    if history:
+        parts += ["## Version history", "\n".join(f"- {line}" for line in history.strip().split("\n"))]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def _action(body: Body) -> Iterator[str]:
+    yield "## Action"
+    yield (
+        f"``Box(-1, 1, ({body.n_activations},), float32)``: the activations that the muscles are commanded to, held "
+        "for a control step and clipped to the range. Muscles follow with a time constant of "
+        f"{body.muscles.activation_time:g} s. An action of another shape, or one that holds NaN, raises ValueError."
+    )
+    rows = []
+    for direction in DIRECTIONS:
+        for arm in body.muscles.arms:
+            first, *_, last = body.muscles.columns(direction, arm)
+            rows.append(f"| {first}-{last} | about the {direction}: {EFFECTS[direction]} | {arm} |")
+    yield "\n".join(["| index | direction | arm |", "|---|---|---|", *rows])
+    yield (
+        f"Each row has the {N_FUNCTIONS} basis functions of `elastica_gym.bodies.muscles`: level 0, then 2 of level 1, "
+        "then 4 of level 2, each from the arm's beginning to its end."
     )
 
 
-def _section(title: str) -> list[str]:
-    return [title, "-" * len(title)]
+def _observation(task: Task, body: Body) -> Iterator[str]:
+    yield "## Observation"
+    yield (
+        f"``Box(float32)``, clipped to its range. Directions are in the frame of the heading: {body.frame}; right is "
+        "to its right seen from above, with y up."
+    )
+    layout, rows = task.layout(body), []
+    for block in layout.blocks:
+        columns = layout[block.name]
+        index = f"{columns.start}-{columns.stop - 1}" if len(block.parts) > 1 else f"{columns.start}"
+        bounds = f"{block.low:g} to {block.high:g}"
+        rows.append(f"| {index} | `{block.name}` | {block.meaning} | {block.unit} | {bounds} |")
+    yield "\n".join(["| index | block | meaning | unit | range |", "|---|---|---|---|---|", *rows])
 
 
-def _rows(observations: list[tuple[str, float, float]]) -> list[str]:
-    """Return a row for each run of observations of one kind and range."""
-    rows, first = [], 0
-    for (kind, low, high), group in itertools.groupby(observations, lambda each: (_kind(each[0]), *each[1:])):
-        names = [name for name, *_ in group]
-        last = first + len(names) - 1
-        index = f"{first}" if last == first else f"{first}-{last}"
-        meaning, unit = READINGS.get(kind, (", ".join(names), ""))
-        count = len({name.split("/")[1] for name in names}) if "{n}" in meaning else 0
-        rows.append(f"| {index} | {meaning.format(n=count)} | {unit} | {low:g} to {high:g} |")
-        first = last + 1
-    return rows
+def _rewards(task: Task) -> Iterator[str]:
+    yield "## Rewards"
+    yield "The sum of these terms, each of which is in the info as ``reward_<term>`` with its weight:"
+    rows = [
+        f"| {name} | {task.reward_weights[name]:g} | {_returned(term)} |" for name, term in task.reward_terms.items()
+    ]
+    rows.append(f"| diverged | {task.reward_weights['diverged']:g} | 1 where the simulation has diverged, and then all "
+                "other terms are 0 |")  # fmt: skip
+    yield "\n".join(["| term | weight | formula, a control step |", "|---|---|---|", *rows])
+    reasons = [
+        f"{number} {name}"
+        for number, name in enumerate(task.termination_reasons)
+        if name != TerminationReason.SUCCESS.name.lower() or task.ends_on_success
+    ]
+    yield (
+        f"The info also has ``distance``: {_returned(task.distance)}; ``is_success``: {_returned(task.succeeds)}; and "
+        f"``termination_reason``, a number: {', '.join(reasons[:-1])} or {reasons[-1]}."
+    )
 
 
-def _kind(name: str) -> str:
-    """Return the kind of a reading; the names of goals stay whole, for each is its own."""
-    first, *rest = name.split("/")
-    kind = f"object/{rest[1]}" if first == "object" else first
-    return kind if kind in READINGS else name
+def _start(task: Task) -> Iterator[str]:
+    yield "## Starting state"
+    yield "All is drawn from the environment's own generator. ``spread`` is one of these, by default the first:"
+    yield "\n".join(f"- ``{name}``: {_described(start)}" for name, start in task.starts.items())
+    if any(start is not draw_start and start is not with_object_held for start in task.starts.values()):
+        yield f"The animal itself, unless its arm holds the object: {_described(draw_start)}"
+    yield f"The goal: {_described(task.sample_goal)}"
+
+
+def _end(task: Task, body: Body) -> Iterator[str]:
+    yield "## Episode end"
+    ends = ["at success"] if task.ends_on_success else []
+    ends += [f"as {name} if {_returned(failed).removeprefix('whether ')}" for name, failed in task.failures.items()]
+    ends.append(
+        f"as diverged if numbers stop being finite or something is faster than {body.senses.fastest:g} m/s: then the "
+        "last sound observation is returned"
+    )
+    yield (
+        f"Truncated after {task.duration:g} s, which are {round(task.duration / CONTROL_STEP)} control steps. "
+        f"Terminated {'; '.join(ends)}."
+    )
+
+
+def _returned(function: Callable[..., Any]) -> str:
+    """Return what a function says that it returns, without its shape."""
+    first = _doc(function).split("\n")[0].removeprefix("Return ").removesuffix(".")
+    for shape in (", (B,) bool", ", (B,)"):
+        first = first.removesuffix(shape)
+    return first
+
+
+def _described(function: Callable[..., Any]) -> str:
+    """Return the docstring of a function on one line."""
+    return _sentence(" ".join(_doc(function).removeprefix("Return ").removeprefix("Write ").split()))
+
+
+def _sentence(text: str) -> str:
+    """Return a text that begins with a capital letter."""
+    return text[:1].upper() + text[1:]
+
+
+def _doc(function: Callable[..., Any]) -> str:
+    while isinstance(function, functools.partial):
+        function = function.func
+    return inspect.getdoc(function) or ""

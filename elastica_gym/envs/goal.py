@@ -71,11 +71,13 @@ from gymnasium.vector import VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
+from ..bodies.observation import Block
 from ..engine.model import Array
 from .batch import BatchEnv
 from .single import SingleEnv
 from .task import Mask, Situation, Task
 from .tasks import octopus_reach, snake_reach
+from .tasks.snake_reach import Goal
 
 Parts = dict[str, NDArray[np.float32]]
 
@@ -96,21 +98,17 @@ class GoalTask(Task):
     tolerance: float
 
 
-def draw_snakes_goal(rng: np.random.Generator, situation: Situation) -> Array:
-    """Return a target as in SnakeReach, (x, z), and the head's way to it [m], (3,)."""
-    return snake_reach.draw_goal(rng, situation)
-
-
-def draw_octopuses_goal(rng: np.random.Generator, situation: Situation) -> Array:
-    """Return where the object stands, (x, z), and the head's way there [m], (3,)."""
+def sample_object(rng: np.random.Generator, situation: Situation) -> Goal:
+    """Return where the object stands."""
     place, head = situation.pose.objects[0, 0, [0, 2]], situation.pose.head[0, [0, 2]]
-    return np.array([*place, np.hypot(*(place - head))])
+    return Goal._make([*place, np.hypot(*(place - head))])
 
 
-def see_goal(situation: Situation) -> Array:
+def observe_goal(situation: Situation) -> Array:
     """Return the heading, the head's place and the goal, each as x and z of the lab, (B, 6)."""
     s, length = situation, situation.body.senses.length
-    return np.concatenate([s.pose.heading, s.pose.head[:, [0, 2]] / length, s.goal[:, :2] / length], axis=1)
+    goal = np.stack([s.goal.x, s.goal.z], axis=1)
+    return np.concatenate([s.pose.heading, s.pose.head[:, [0, 2]] / length, goal / length], axis=1)
 
 
 def is_near(achieved: ArrayLike, desired: ArrayLike, tolerance: float) -> Mask:
@@ -121,7 +119,7 @@ def is_near(achieved: ArrayLike, desired: ArrayLike, tolerance: float) -> Mask:
 
 def succeeds(situation: Situation, tolerance: float) -> Mask:
     """Return whether the head is at the goal, as one who sees them can tell, (B,) bool."""
-    seen = np.clip(see_goal(situation), -4.0, 4.0).astype(np.float32)
+    seen = np.clip(observe_goal(situation), -4.0, 4.0).astype(np.float32)
     return is_near(seen[:, 2:4], seen[:, 4:], tolerance)
 
 
@@ -133,12 +131,11 @@ def reached(situation: Situation, tolerance: float) -> Array:
 def distance(situation: Situation) -> Array:
     """Return how much nearer the head is to the goal than at reset [m], (B,)."""
     goal, head = situation.goal, situation.pose.head
-    x, z = goal[:, 0] - head[:, 0], goal[:, 1] - head[:, 2]
-    return goal[:, 2] - np.sqrt(x * x + z * z)
+    return goal.way - snake_reach.distance_from(goal.x, goal.z, head)
 
 
 def goal_conditioned(
-    task: Task, *, draw_goal: Callable[[np.random.Generator, Situation], Array], tolerance: float
+    task: Task, *, sample_goal: Callable[[np.random.Generator, Situation], Goal], tolerance: float
 ) -> GoalTask:
     """Return the goal-conditioned form of a task: bring the head to a place, with the animal and the starts of another.
 
@@ -146,19 +143,23 @@ def goal_conditioned(
     ----------
     task : Task
         Its name gets ``Goal`` at the end.
-    draw_goal : callable
-        As of a `Task`, the place (x, z) [m], and the way of the head to it [m], (3,).
+    sample_goal : callable
+        As of a `Task`; it returns a `Goal`.
     tolerance : float
         Distance of the head from the place that is near enough, in body lengths.
     """
     own = dict(
         name=f"{task.name}Goal",
+        description=f"{task.name}Goal: bring the head to a place; goal-conditioned, for hindsight experience replay.",
         base=task.name,
-        goal_size=3,
-        draw_goal=draw_goal,
-        see_goal=see_goal,
-        goal_bounds=((-1.0, 1.0),) * 2 + ((-4.0, 4.0),) * 4,
-        goal_names=("heading/x", "heading/z", "achieved/x", "achieved/z", "desired/x", "desired/z"),
+        goal_type=Goal,
+        sample_goal=sample_goal,
+        observe_goal=observe_goal,
+        goal_blocks=(
+            Block("heading", ("x", "z"), -1.0, 1.0, "1", "heading, in the lab"),
+            Block("achieved", ("x", "z"), -4.0, 4.0, "body length", "place of the head, in the lab"),
+            Block("desired", ("x", "z"), -4.0, 4.0, "body length", "place where it should be, in the lab"),
+        ),
         reward_terms={"reached": partial(reached, tolerance=tolerance)},
         reward_weights={"reached": 1.0, "diverged": 0.0},
         distance=distance,
@@ -171,8 +172,8 @@ def goal_conditioned(
 
 
 GOAL_TASKS = (
-    goal_conditioned(snake_reach.TASK, draw_goal=draw_snakes_goal, tolerance=0.05),
-    goal_conditioned(octopus_reach.TASK, draw_goal=draw_octopuses_goal, tolerance=0.225),
+    goal_conditioned(snake_reach.TASK, sample_goal=snake_reach.sample_goal, tolerance=0.05),
+    goal_conditioned(octopus_reach.TASK, sample_goal=sample_object, tolerance=0.225),
 )
 
 

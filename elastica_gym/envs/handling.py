@@ -11,7 +11,7 @@ import numpy as np
 from ..bodies import octopus
 from ..bodies.grip import arm_elements, grip
 from ..engine.model import Array, Index, State
-from .task import GOAL_BOUNDS, GOAL_NAMES, Mask, Situation, Task, has_toppled, in_heading_frame, no_target, way_to_goal
+from .task import DIRECTION, HOME, Mask, Situation, Task, has_toppled, in_heading_frame, no_target, way_to
 
 WRAPPED = np.radians(200.0)
 """Angle around the object's axis that the touching elements of an arm span where it has grabbed it [rad]"""
@@ -33,12 +33,27 @@ AT_HOME = 0.1
 """Distance of the head from home that counts as being there [m]"""
 BROUGHT = 0.3
 """Distance of the object from the head that counts as having brought it [m]"""
-GOAL_SIZE = 5
-"""Home (x, z), the centre of mass at the start (x, z), and how far the object was from home"""
+TO_OBJECT = DIRECTION._replace(meaning="direction from the head to the object: forward and right of a unit vector")
+"""Where to go, as animals observe it that shall go to their object"""
+
+
+class Goal(NamedTuple):
+    """Where to bring the object, and how all was at the start."""
+
+    home_x: Array
+    """Where home is [m]"""
+    home_z: Array
+    """The same [m]"""
+    start_x: Array
+    """Where the centre of mass was at the start [m]"""
+    start_z: Array
+    """The same [m]"""
+    away: Array
+    """Distance of the object from home at the start [m]"""
 
 
 class Handling(NamedTuple):
-    """How each of B animals handles its object: the columns of a situation's ``progress``, (B,) each."""
+    """How each of B animals handles its object: a situation's ``progress``, (B,) each."""
 
     reach: Array
     """Least distance of the object's surface from the half of an arm that is next to the head [m]"""
@@ -70,14 +85,9 @@ class Handling(NamedTuple):
     """1 from when both head and centre of mass have been `CRAWLED` from there, at the same moment, else 0"""
 
 
-def handling(progress: Array) -> Handling:
-    """Return the columns of a situation's ``progress`` or ``progress_before`` by name."""
-    return Handling(*progress.T)
-
-
-def follow(situation: Situation, state: State) -> Array:
-    """Return how the object is handled at the end of this step, (B, M)."""
-    s, old, begins = situation, handling(situation.progress), situation.time_left >= 1.0
+def follow(situation: Situation, state: State) -> Handling:
+    """Return how the object is handled at the end of this step."""
+    s, old, begins = situation, situation.progress, situation.time_left >= 1.0
     held = grip(s.body, state)
     arms = np.where(held.counts >= FEWEST, held.spans, 0.0)
     span = np.maximum(arms[:, 0], arms[:, 1])
@@ -88,27 +98,24 @@ def follow(situation: Situation, state: State) -> Array:
     keeps = (old.grabbed == 1.0) & (slack * s.control_dt <= SLACK_TIME + 1e-9)
     grabbed = np.where(begins, span >= KEPT, grabs | keeps)
     base_x, base_z = held.base[:, 0], held.base[:, 2]
-    head_away = _away(s.pose.head, s.goal[:, 0], s.goal[:, 1])
-    crawls = (head_away >= CRAWLED[0]) & (_away(s.pose.centre, s.goal[:, 2], s.goal[:, 3]) >= CRAWLED[1])
+    head_away = _away(s.pose.head, s.goal.home_x, s.goal.home_z)
+    crawls = (head_away >= CRAWLED[0]) & (_away(s.pose.centre, s.goal.start_x, s.goal.start_z) >= CRAWLED[1])
     carried = held.touching.any(axis=1) & (held.tilt <= UPRIGHT) & ~begins
-    return np.stack(
-        Handling(
-            reach=_reach(held.gaps, arm_elements(s.body)),
-            span=span,
-            winding=held.windings.max(axis=1),
-            first=first,
-            second=second,
-            slack=slack,
-            grabbed=grabbed.astype(np.float64),
-            base_x=base_x,
-            base_z=base_z,
-            tilt=held.tilt,
-            moved_x=old.moved_x + np.where(carried, base_x - old.base_x, 0.0),
-            moved_z=old.moved_z + np.where(carried, base_z - old.base_z, 0.0),
-            head_way=np.maximum(old.head_way, head_away),
-            crawled=np.maximum(old.crawled, crawls),
-        ),
-        axis=1,
+    return Handling(
+        reach=_reach(held.gaps, arm_elements(s.body)),
+        span=span,
+        winding=held.windings.max(axis=1),
+        first=first,
+        second=second,
+        slack=slack,
+        grabbed=grabbed.astype(np.float64),
+        base_x=base_x,
+        base_z=base_z,
+        tilt=held.tilt,
+        moved_x=old.moved_x + np.where(carried, base_x - old.base_x, 0.0),
+        moved_z=old.moved_z + np.where(carried, base_z - old.base_z, 0.0),
+        head_way=np.maximum(old.head_way, head_away),
+        crawled=np.maximum(old.crawled, crawls),
     )
 
 
@@ -126,22 +133,22 @@ def _away(place: Array, x: Array, z: Array) -> Array:
     return np.sqrt(dx * dx + dz * dz)
 
 
-def draw_goal(rng: np.random.Generator, situation: Situation) -> Array:
-    """Return home, which is where the head is, and the rest of a goal, (5,)."""
+def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
+    """Return a goal whose home is where the head is."""
     return goal_with_home(situation, situation.pose.head[0, 0], situation.pose.head[0, 2])
 
 
-def goal_with_home(situation: Situation, x: float, z: float) -> Array:
-    """Return the goal of one environment whose home is there, (5,)."""
+def goal_with_home(situation: Situation, x: float, z: float) -> Goal:
+    """Return the goal of one environment whose home is there."""
     pose = situation.pose
     away = _away(pose.objects[:, 0], np.array([x]), np.array([z]))
-    return np.array([x, z, *pose.centre[0, [0, 2]], *away])
+    return Goal._make([x, z, *pose.centre[0, [0, 2]], *away])
 
 
 def brought(situation: Situation) -> Array:
     """Return by how much the object is nearer to home than at the start [m], (B,)."""
     goal = situation.goal
-    return goal[:, 4] - _away(situation.pose.objects[:, 0], goal[:, 0], goal[:, 1])
+    return goal.away - _away(situation.pose.objects[:, 0], goal.home_x, goal.home_z)
 
 
 def direction_to_object(situation: Situation) -> tuple[Array, Array]:
@@ -152,26 +159,21 @@ def direction_to_object(situation: Situation) -> tuple[Array, Array]:
     return in_heading_frame(situation, x / away, z / away)
 
 
-def see_object(situation: Situation) -> Array:
+def observe_object(situation: Situation) -> Array:
     """Return the direction to the object, forward and right, and the way home, forward and right, (B, 4)."""
-    return np.stack([*direction_to_object(situation), *way_to_goal(situation)], axis=1)
+    return np.stack([*direction_to_object(situation), *way_home(situation)], axis=1)
+
+
+def way_home(situation: Situation) -> tuple[Array, Array]:
+    """Return the way from the head to its home, forward and right, in body lengths, (B,) each."""
+    return way_to(situation, situation.goal.home_x, situation.goal.home_z)
 
 
 def direction_home(situation: Situation) -> tuple[Array, Array]:
     """Return the direction from the head to its home, forward and right, (B,) each; at home it is 0."""
-    forward, right = way_to_goal(situation)
+    forward, right = way_home(situation)
     away = np.maximum(np.sqrt(forward * forward + right * right), 1e-9)
     return forward / away, right / away
-
-
-def now(situation: Situation) -> Handling:
-    """Return how the object is handled."""
-    return handling(situation.progress)
-
-
-def before(situation: Situation) -> Handling:
-    """Return how it was handled a step ago."""
-    return handling(situation.progress_before)
 
 
 # what is rewarded: each is by how much a function of where things are has grown, and adds up to nothing over a detour
@@ -179,13 +181,13 @@ def before(situation: Situation) -> Handling:
 
 def approach(situation: Situation) -> Array:
     """Return by how much an arm's inner half has come nearer to the object in this step, in body lengths, (B,)."""
-    return (before(situation).reach - now(situation).reach) / situation.body.senses.length
+    return (situation.progress_before.reach - situation.progress.reach) / situation.body.senses.length
 
 
 def crawl(situation: Situation) -> Array:
     """Return by how much the furthest way of the head from its start has grown, in parts of 0.2 m, up to 1, (B,)."""
     least, _ = CRAWLED
-    new, old = (np.minimum(h.head_way, least) for h in (now(situation), before(situation)))
+    new, old = (np.minimum(h.head_way, least) for h in (situation.progress, situation.progress_before))
     return (new - old) / least
 
 
@@ -196,23 +198,23 @@ def moved(progress: Handling) -> Array:
 
 def move(situation: Situation) -> Array:
     """Return by how much the way of the object has grown, in parts of 0.1 m, up to 1, (B,)."""
-    new, old = (np.minimum(moved(h), MOVED) for h in (now(situation), before(situation)))
+    new, old = (np.minimum(moved(h), MOVED) for h in (situation.progress, situation.progress_before))
     return (new - old) / MOVED
 
 
 def wrap(situation: Situation) -> Array:
     """Return by how much the angle around the object has grown, up to 200 degrees [rad], (B,)."""
-    return np.minimum(now(situation).span, WRAPPED) - np.minimum(before(situation).span, WRAPPED)
+    return np.minimum(situation.progress.span, WRAPPED) - np.minimum(situation.progress_before.span, WRAPPED)
 
 
 def wind(situation: Situation) -> Array:
     """Return by how much the angle that an arm winds around the object has grown, up to 200 degrees [rad], (B,)."""
-    return np.minimum(now(situation).winding, WRAPPED) - np.minimum(before(situation).winding, WRAPPED)
+    return np.minimum(situation.progress.winding, WRAPPED) - np.minimum(situation.progress_before.winding, WRAPPED)
 
 
 def grab(situation: Situation) -> Array:
     """Return 1 where the object has been grabbed in this step, -1 where it has been let go, (B,)."""
-    return now(situation).grabbed - before(situation).grabbed
+    return situation.progress.grabbed - situation.progress_before.grabbed
 
 
 def home(situation: Situation) -> Array:
@@ -223,31 +225,31 @@ def home(situation: Situation) -> Array:
     s = situation
 
     def near(head: Array) -> Array:
-        return np.maximum(1.0 - _away(head, s.goal[:, 0], s.goal[:, 1]) / s.body.senses.length, 0.0)
+        return np.maximum(1.0 - _away(head, s.goal.home_x, s.goal.home_z) / s.body.senses.length, 0.0)
 
-    return now(s).grabbed * near(s.pose.head) - before(s).grabbed * near(s.before.head)
+    return s.progress.grabbed * near(s.pose.head) - s.progress_before.grabbed * near(s.before.head)
 
 
 def is_at_home(situation: Situation) -> Mask:
     """Return whether the head is at home, and the object, in the animal's hold, near it, (B,) bool."""
-    s, h = situation, now(situation)
-    at_home = _away(s.pose.head, s.goal[:, 0], s.goal[:, 1]) <= AT_HOME
+    s, h = situation, situation.progress
+    at_home = _away(s.pose.head, s.goal.home_x, s.goal.home_z) <= AT_HOME
     return (h.grabbed == 1.0) & at_home & (_away(s.pose.head, h.base_x, h.base_z) <= BROUGHT)
 
 
 def has_crawled(situation: Situation) -> Mask:
     """Return whether the head and the centre of mass have been far enough from their starts at once, (B,) bool."""
-    return now(situation).crawled == 1.0
+    return situation.progress.crawled == 1.0
 
 
 def has_moved(situation: Situation) -> Mask:
     """Return whether the object has been moved by 0.1 m, (B,) bool."""
-    return moved(now(situation)) >= MOVED
+    return moved(situation.progress) >= MOVED
 
 
 def has_fallen(situation: Situation) -> Mask:
     """Return whether the object leans by more than 45 degrees, (B,) bool."""
-    return now(situation).tilt > UPRIGHT
+    return situation.progress.tilt > UPRIGHT
 
 
 def fallen(situation: Situation) -> Array:
@@ -258,11 +260,10 @@ def fallen(situation: Situation) -> Array:
 handling_task = functools.partial(
     Task,
     make_body=octopus,
-    goal_size=GOAL_SIZE,
-    draw_goal=draw_goal,
-    goal_names=GOAL_NAMES,
-    goal_bounds=GOAL_BOUNDS,
-    progress_names=Handling._fields,
+    goal_type=Goal,
+    sample_goal=sample_goal,
+    goal_blocks=(DIRECTION, HOME),
+    progress_type=Handling,
     follow=follow,
     ends_on_success=True,
     failures={"toppled": has_toppled, "fallen": has_fallen},

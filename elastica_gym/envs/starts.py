@@ -35,14 +35,14 @@ HOLDING = 2.0
 
 
 def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
-    """Write a new start into environment i: shape, heading and velocity at random, muscles at rest.
+    """Write a new start: shape, heading and velocity at random, muscles at rest.
 
-    All else, ghosts included, is copied from the body at rest: what diverged leaves no trace.
-
-    The animal is one rod. It is bent sideways by couples that are three sine waves of random strength and phase, and
-    straightens when let go: it bends by what they would bend its thinnest part, over how much
-    stiffer it is. The animal's centre of mass is above the origin.
+    The heading is uniform. The animal is bent sideways by couples that are three sine waves of random phase, under
+    which the curvature of its thinnest part has standard deviations of 0.7, 0.35 and 0.175 per body length; it
+    straightens when let go. Its horizontal velocity has a standard deviation of 0.02 m/s in each direction. Its centre
+    of mass is above the origin.
     """
+    # all else, ghosts included, is copied from the body at rest: what diverged leaves no trace; the animal is one rod
     heading = rng.uniform(-np.pi, np.pi)
     bends = rng.normal(0.0, BENDS)
     phases = rng.uniform(-np.pi, np.pi, len(BENDS))

@@ -3,21 +3,25 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..bodies.body import Body, Pose
+from ..bodies.observation import Block, Layout, single
 from ..engine.model import Array, State
 
 Mask = NDArray[np.bool_]
 
 
-GOAL_NAMES = ("goal/forward", "goal/right", "home/forward", "home/right")
-"""What the octopus sees of its goals: a direction to go, and the way home"""
-GOAL_BOUNDS = ((-1.0, 1.0), (-1.0, 1.0), (-4.0, 4.0), (-4.0, 4.0))
-"""Least and largest value of each"""
+DIRECTION = Block("goal", ("forward", "right"), -1.0, 1.0, "1", "direction to go: forward and right of a unit vector")
+"""Where to go, as animals observe it"""
+HOME = Block("home", ("forward", "right"), -4.0, 4.0, "body length",
+             "way from the head to where it was at the start, its home: forward and right")  # fmt: skip
+"""Where to come back to"""
+CLOCK_PERIOD = 1.0
+"""Period of the clock that animals observe [s]"""
 
 
 class TerminationReason(IntEnum):
@@ -38,12 +42,12 @@ class Situation(NamedTuple):
     """Where the animals are now"""
     before: Pose
     """Where they were a control step ago"""
-    goal: Array
-    """What the task drew at reset, (B, G)"""
-    progress: Array
-    """What the task follows through the episode, as of now, (B, M)"""
-    progress_before: Array
-    """And a control step ago, (B, M)"""
+    goal: Any
+    """What the task drew at reset: its ``goal_type``, each field (B,)"""
+    progress: Any
+    """What the task follows through the episode, as of now: its ``progress_type``, each field (B,)"""
+    progress_before: Any
+    """And a control step ago"""
     activations: Array
     """Activations commanded in this step, (B, 42)"""
     time_left: Array
@@ -58,17 +62,25 @@ class Situation(NamedTuple):
         return s._replace(
             pose=s.pose.only(envs),
             before=s.before.only(envs),
-            goal=s.goal[envs],
-            progress=s.progress[envs],
-            progress_before=s.progress_before[envs],
+            goal=_only(s.goal, envs),
+            progress=_only(s.progress, envs),
+            progress_before=_only(s.progress_before, envs),
             activations=s.activations[envs],
             time_left=s.time_left[envs],
         )
 
 
-def follow_nothing(situation: Situation, state: State) -> Array:
-    """Return no numbers: what such a task asks for is in the poses, (B, 0)."""
-    return situation.progress
+def _only(columns: Any, envs: slice) -> Any:
+    return type(columns)(*(column[envs] for column in columns))
+
+
+class NoProgress(NamedTuple):
+    """The progress of tasks that ask for nothing but poses."""
+
+
+def follow_nothing(situation: Situation, state: State) -> NoProgress:
+    """Return no numbers."""
+    return NoProgress()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,24 +97,22 @@ class Task:
     starts : dict of str to callable
         By name of the ``spread``, what writes a new start into an environment and returns the activations that the
         muscles have reached in it, (42,), or None where they are at rest; see `elastica_gym.envs.starts`.
-    goal_size : int
-        How many numbers G a goal is.
-    draw_goal : callable
-        From a generator and the situation of one environment at reset, its goal, (G,).
-    goal_names : tuple of str
-        Names of what ``see_goal`` returns.
-    goal_bounds : tuple of tuple of float
-        Least and largest value of each.
-    see_goal : callable
-        From a situation, what the animal sees of its goal in the frame of its heading, (B, g).
+    goal_type : type
+        A NamedTuple of the numbers that a goal is.
+    sample_goal : callable
+        From a generator and the situation of one environment at reset, its goal: a ``goal_type`` of floats.
+    goal_blocks : tuple of Block
+        What ``observe_goal`` returns.
+    observe_goal : callable
+        From a situation, what the animal observes of its goal, in the frame of its heading, (B, g).
     reward_terms : dict of str to callable
         From a situation, each term before its weight, (B,).
     reward_weights : dict of str to float
         Weight of each term, and of ``diverged``, which is 1 where the simulation has diverged.
-    progress_names : tuple of str
-        Names of the M numbers that the task follows through an episode; by default none.
+    progress_type : type
+        A NamedTuple of the numbers that the task follows through an episode; by default none.
     follow : callable
-        From a situation and the State, those numbers, (B, M), with ``progress`` as of the last step. It is asked at
+        From a situation and the State, those numbers, (B,) each, with ``progress`` as of the last step. It is called at
         reset too, when all of the episode is left and ``progress`` is zero.
     distance : callable
         From a situation, how far the animal has come [m], (B,).
@@ -114,36 +124,33 @@ class Task:
         By its name among the ``termination_reasons``, from a situation, whether the task has failed, which ends the
         episode, (B,) bool.
     target : callable
-        From goals, the target's position in the lab [m], (B, 3), or None where there is none to show.
+        From a ``goal_type`` of (B,) each, the target's position in the lab [m], (B, 3), or None if it has none.
+    description : str
+        What the task is about, in Markdown; `elastica_gym.envs.document` opens with it.
     """
 
     name: str
     make_body: Callable[..., Body]
     duration: float
     starts: dict[str, Callable[[np.random.Generator, Body, State, int], Array | None]]
-    goal_size: int
-    draw_goal: Callable[[np.random.Generator, Situation], Array]
-    goal_names: tuple[str, ...]
-    goal_bounds: tuple[tuple[float, float], ...]
-    see_goal: Callable[[Situation], Array]
+    goal_type: type[Any]
+    sample_goal: Callable[[np.random.Generator, Situation], Any]
+    goal_blocks: tuple[Block, ...]
+    observe_goal: Callable[[Situation], Array]
     reward_terms: dict[str, Callable[[Situation], Array]]
     reward_weights: dict[str, float]
     distance: Callable[[Situation], Array]
     succeeds: Callable[[Situation], Mask]
     ends_on_success: bool
-    progress_names: tuple[str, ...] = ()
-    follow: Callable[[Situation, State], Array] = follow_nothing
+    progress_type: type[Any] = NoProgress
+    follow: Callable[[Situation, State], Any] = follow_nothing
     failures: dict[str, Callable[[Situation], Mask]] = field(default_factory=dict)
-    target: Callable[[Array], Array | None]
+    target: Callable[[Any], Array | None]
+    description: str = ""
 
     def __post_init__(self) -> None:
         if not self.starts:
             raise ValueError("starts must have at least one way to draw a start")
-        if len(self.goal_bounds) != len(self.goal_names):
-            raise ValueError(
-                f"goal_bounds must have a least and a largest value for each of {self.goal_names}, "
-                f"not {self.goal_bounds}"
-            )
         weighted = {*self.reward_terms, "diverged"}
         if set(self.reward_weights) != weighted:
             raise ValueError(
@@ -162,11 +169,17 @@ class Task:
         """Names of the reasons why an episode ends, by number: those of `TerminationReason`, then the failures."""
         return (*(reason.name.lower() for reason in TerminationReason), *self.failures)
 
-    def observations(self, body: Body) -> list[tuple[str, float, float]]:
-        """Return the name and the least and largest value of each number that an animal of this task observes."""
-        clock = [("clock/sine", -1.0, 1.0), ("clock/cosine", -1.0, 1.0), ("time_left", 0.0, 1.0)]
-        goal = [(name, *bounds) for name, bounds in zip(self.goal_names, self.goal_bounds, strict=True)]
-        return body.readings() + clock + goal
+    def layout(self, body: Body) -> Layout:
+        """Return the layout of what an animal of this task observes."""
+        clock = f"sine and cosine of a clock with a period of {CLOCK_PERIOD:g} s"
+        return Layout(
+            [
+                *body.blocks(),
+                Block("clock", ("sine", "cosine"), -1.0, 1.0, "1", clock),
+                single("time_left", 0.0, 1.0, "1", "part of the episode that is left"),
+                *self.goal_blocks,
+            ]
+        )
 
 
 def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:
@@ -175,14 +188,13 @@ def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, A
     return x * hx + z * hz, z * hx - x * hz
 
 
-def way_to_goal(situation: Situation) -> tuple[Array, Array]:
-    """Return the way from the head to the place that a goal begins with, forward and right, in body lengths."""
+def way_to(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:
+    """Return the way from the head to a place, forward and right, in body lengths, (B,) each."""
     s, length = situation, situation.body.senses.length
-    x, z = (s.goal[:, 0] - s.pose.head[:, 0]) / length, (s.goal[:, 1] - s.pose.head[:, 2]) / length
-    return in_heading_frame(s, x, z)
+    return in_heading_frame(s, (x - s.pose.head[:, 0]) / length, (z - s.pose.head[:, 2]) / length)
 
 
-def no_target(goal: Array) -> None:
+def no_target(goal: Any) -> None:
     """Return None: there is no place to show, but a direction or an object."""
 
 

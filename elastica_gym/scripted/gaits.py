@@ -2,7 +2,6 @@
 
 import functools
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,9 +9,7 @@ from ..bodies.body import Body
 from ..bodies.muscles import N_FUNCTIONS, OCTOPUS, activations_for, couple_matrix
 from ..engine import Rod, Wave
 from ..engine.model import Array
-
-if TYPE_CHECKING:
-    from ..envs.batch import BatchEnv
+from ..envs.batch import BatchEnv
 
 SEED_COEFFICIENTS = (3.4e-3, 3.3e-3, 4.2e-3, 2.6e-3, 3.6e-3, 3.5e-3)
 """Spline coefficients of the snake's published gait [N m]"""
@@ -27,12 +24,12 @@ TURNING = 1.5e-3
 """Couple with which the scripted crawl turns, at most [N m]"""
 
 
-def seed_gait(env: "BatchEnv") -> Array:
+def seed_gait(env: BatchEnv) -> Array:
     """Return the actions of the snake's published gait, which goes straight on wherever it should go, (B, 42)."""
     return _crawl(env, SEED_PERIOD, np.zeros(env.num_envs))
 
 
-def snake_crawl(env: "BatchEnv", angle: Array) -> Array:
+def snake_crawl(env: BatchEnv, angle: Array) -> Array:
     """Return the actions of a crawl that turns: the published gait, faster, on a constant bend, (B, 42).
 
     Parameters
@@ -45,12 +42,12 @@ def snake_crawl(env: "BatchEnv", angle: Array) -> Array:
     return _crawl(env, CRAWL_PERIOD, np.clip(angle, -1.0, 1.0))
 
 
-def _crawl(env: "BatchEnv", period: float, turning: Array) -> Array:
+def _crawl(env: BatchEnv, period: float, turning: Array) -> Array:
     wave, turn = _seed_tables(env.body)
     return play_wave(env, wave[None], np.full(env.num_envs, period), turning[:, None] * TURNING * turn)
 
 
-def play_wave(env: "BatchEnv", tables: Array, period: Array, turn: Array | float = 0.0) -> Array:
+def play_wave(env: BatchEnv, tables: Array, period: Array, turn: Array | float = 0.0) -> Array:
     """Return the actions of waves at the time of each environment, (B, 42).
 
     Parameters
@@ -119,7 +116,7 @@ OCTOPUS_FUNCTIONS = np.concatenate([OCTOPUS.columns(direction, "first")[:3] for 
 """The first arm's activations that a stroke plays"""
 
 
-def octopus_crawl(env: "BatchEnv", angle: Array) -> Array:
+def octopus_crawl(env: BatchEnv, angle: Array) -> Array:
     """Return the actions of a crawl to the left or to the right, whichever is nearer to where to go, (B, 42).
 
     Both arms stroke alike, so it goes only these two ways: towards its arms and away from them.
@@ -135,11 +132,11 @@ def octopus_crawl(env: "BatchEnv", angle: Array) -> Array:
     return np.where((angle > 0.0)[:, None], strokes["right"], strokes["left"])
 
 
-def _stroke(env: "BatchEnv", period: float, table: tuple[tuple[float, ...], ...]) -> Array:
+def _stroke(env: BatchEnv, period: float, table: tuple[tuple[float, ...], ...]) -> Array:
     return play_stroke(env, np.full(env.num_envs, period), [np.array(table)] * len(env.body.muscles.arms))
 
 
-def play_stroke(env: "BatchEnv", period: Array, tables: Sequence[Array]) -> Array:
+def play_stroke(env: BatchEnv, period: Array, tables: Sequence[Array]) -> Array:
     """Return the actions of a stroke of the arms at the time of each environment, (B, 42).
 
     Parameters
@@ -166,7 +163,7 @@ SWING = 0.7
 """Activation with which the scripted reach bends an arm towards what is ahead or behind"""
 
 
-def octopus_reach(env: "BatchEnv", angle: Array) -> Array:
+def octopus_reach(env: BatchEnv, angle: Array) -> Array:
     """Return the actions of a crawl to what stands to a side; to what is ahead or behind, an arm bends, (B, 42)."""
     actions = octopus_crawl(env, angle)
     for rows, arm in ((np.abs(angle) < 0.25 * np.pi, 1), (np.abs(angle) > 0.75 * np.pi, 0)):

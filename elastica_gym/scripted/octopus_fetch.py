@@ -7,26 +7,21 @@ second arm, which points ahead, holds for the first one in the mirror: with the 
 are zero.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+import functools
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..bodies.muscles import N_FUNCTIONS, OCTOPUS
-from ..bodies.octopus import BASE_RADIUS, OBJECT_LENGTH, OBJECT_RADIUS
+from ..bodies.observation import Layout
+from ..bodies.octopus import BASE_RADIUS, OBJECT_LENGTH, OBJECT_RADIUS, octopus
 from ..engine.model import Array, Index
-from ..envs.handling import now
+from ..envs.batch import BatchEnv
 from ..envs.task import Mask
+from ..envs.tasks.octopus_fetch import TASK
 from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
 
-if TYPE_CHECKING:
-    from ..envs.batch import BatchEnv
-
-NODES, TOUCH, THING, AXIS = slice(0, 33), slice(137, 148), slice(148, 151), slice(151, 154)
-VELOCITIES, LEVELS, GOAL, HOME = slice(33, 66), slice(161, 203), slice(206, 208), slice(208, 210)
-"""Where observations have what the script sees, see `elastica_gym.envs.tasks.octopus_fetch`"""
-HEAD_NODE = 5
-"""Which of the nodes seen is the head's centre"""
 STROKING = OCTOPUS_FUNCTIONS
 """The first arm's activations that a stroke plays"""
 BENDING = OCTOPUS.columns("normal", "first")
@@ -143,23 +138,32 @@ class Sight(NamedTuple):
     """Way to carry the object, ahead and to the right [m], (B, 2): where to go, as far as it is home"""
 
 
+@functools.cache
+def _layout() -> tuple[Layout, int]:
+    """Return where observations have what the script goes by, and which of the observed nodes is the head's centre."""
+    body = octopus()
+    return TASK.layout(body), body.senses.nodes.tolist().index(body.senses.head)
+
+
 def see(observations: NDArray[np.float32]) -> Sight:
     """Return what the script goes by, from observations (B, 210) of a task with an object."""
+    layout, head = _layout()
     o: Array = observations.astype(np.float64)
     # of a body of 1 m
-    base = o[:, THING] - 0.5 * OBJECT_LENGTH * o[:, AXIS]
-    places = o[:, NODES].reshape(len(o), -1, 3)
-    from_head = places - places[:, [HEAD_NODE]]
-    speeds = np.linalg.norm(o[:, VELOCITIES].reshape(len(o), -1, 3), axis=2)
+    axis = o[:, layout["object/0/axis"]]
+    base = o[:, layout["object/0/position"]] - 0.5 * OBJECT_LENGTH * axis
+    places = o[:, layout["position"]].reshape(len(o), -1, 3)
+    from_head = places - places[:, [head]]
+    speeds = np.linalg.norm(o[:, layout["velocity"]].reshape(len(o), -1, 3), axis=2)
     return Sight(
         ahead=base[:, 0],
         right=base[:, 2],
         gap=_gap(from_head, base),
-        touched=np.sum(o[:, TOUCH] > 0.0, axis=1),
-        levels=o[:, LEVELS],
-        tilt=np.arccos(np.clip(o[:, AXIS][:, 1], -1.0, 1.0)),
+        touched=np.sum(o[:, layout["touch"]] > 0.0, axis=1),
+        levels=o[:, layout["activation"]],
+        tilt=np.arccos(np.clip(axis[:, 1], -1.0, 1.0)),
         speed=speeds.max(axis=1),
-        goal=o[:, GOAL] * np.linalg.norm(o[:, HOME], axis=1, keepdims=True),
+        goal=o[:, layout["goal"]] * np.linalg.norm(o[:, layout["home"]], axis=1, keepdims=True),
     )
 
 
@@ -175,9 +179,9 @@ def _gap(nodes: Array, base: Array) -> Array:
     return np.minimum(*gaps) - OBJECT_RADIUS - BASE_RADIUS
 
 
-def fetch(env: "BatchEnv") -> Array:
+def fetch(env: BatchEnv) -> Array:
     """Return the actions of the script in a task that follows how the object is handled, (B, 42)."""
-    handled = now(env.situation())
+    handled = env.situation().progress
     time = env.elapsed.astype(np.float64) * env.control_dt
     return act(see(env.observations), time, handled.grabbed == 1.0)
 

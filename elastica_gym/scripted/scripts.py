@@ -7,7 +7,7 @@ import numpy as np
 from ..engine.model import Array
 from ..envs.batch import BatchEnv
 from ..envs.goal import GoalTask
-from ..envs.handling import see_object
+from ..envs.handling import observe_object
 from ..envs.task import Task
 from ..envs.tasks import octopus_crawl as crawl
 from ..envs.tasks import snake_forward, snake_reach, snake_steer
@@ -30,7 +30,7 @@ def reach(env: BatchEnv) -> Array:
 
 def steer(env: BatchEnv) -> Array:
     """Return the actions of a crawl in the commanded direction, weaker where it is too fast, (B, 42)."""
-    forward, right, speed, along, across = snake_steer.see_goal(env.situation()).T
+    forward, right, speed, along, across = snake_steer.observe_goal(env.situation()).T
     lag = speed - (along * forward + across * right)
     strength = np.clip(speed / snake_steer.SPEEDS[1] + 10.0 * lag, 0.0, 1.0)
     return strength[:, None] * snake_crawl(env, np.arctan2(right, forward))
@@ -38,13 +38,13 @@ def steer(env: BatchEnv) -> Array:
 
 def crawl_to_the_commanded_side(env: BatchEnv) -> Array:
     """Return the actions of the octopus' crawl in the commanded direction, (B, 42)."""
-    seen = crawl.see_goal(env.situation())
+    seen = crawl.observe_goal(env.situation())
     return octopus_crawl(env, np.arctan2(seen[:, 1], seen[:, 0]))
 
 
 def reach_for_the_object(env: BatchEnv) -> Array:
     """Return the actions of a script that throws an arm at the object, or crawls to it, (B, 42)."""
-    seen = see_object(env.situation())
+    seen = observe_object(env.situation())
     return octopus_reach(env, np.arctan2(seen[:, 1], seen[:, 0]))
 
 

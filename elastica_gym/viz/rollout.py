@@ -10,6 +10,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from ..bodies.body import Body, Pose
+from ..bodies.observation import Layout
 from ..engine.model import Array, Index, State
 
 HOME_RADIUS = 0.1
@@ -26,7 +27,6 @@ class Batch(Protocol):
     body: Body
     state: State
     activations: Array
-    goal: Array
     control_dt: float
     render_size: tuple[int, int]
     task: Any
@@ -298,22 +298,22 @@ def run_rollout(env: Any, policy: Policy, *, seed: int = 0, index: int = 0, **en
 
 
 def _direction(env: Batch, i: int) -> Array:
-    """Return the direction of the goal that the animal sees, in the lab, (3,), or (0,) where it sees none."""
-    names = env.task.goal_names
-    if not {"goal/forward", "goal/right"} <= set(names):
+    """Return the direction of the goal that the animal observes, in the lab, (3,), or (0,) if it observes none."""
+    layout = Layout(env.task.goal_blocks)
+    if not {"goal/forward", "goal/right"} <= set(layout.names):
         return np.zeros(0)
-    seen, (hx, hz) = env.task.see_goal(env.situation())[i], env.pose.heading[i]
-    forward, right = seen[names.index("goal/forward")], seen[names.index("goal/right")]
+    observed, (hx, hz) = env.task.observe_goal(env.situation())[i], env.pose.heading[i]
+    forward, right = observed[layout["goal"]][:2]
     size = max(float(np.hypot(forward, right)), 1e-9)
     return np.array([forward * hx - right * hz, 0.0, forward * hz + right * hx]) / size
 
 
 def _home(env: Batch, i: int) -> Array:
-    """Return where the animal has to come back to, on the ground, (3,), or (0,) where its task has no such place."""
-    # tasks that show the way home have it first in their goals
-    if "home/forward" not in env.task.goal_names:
+    """Return where the animal has to come back to, on the ground, (3,), or (0,) if its task has no such place."""
+    if "home" not in Layout(env.task.goal_blocks):
         return np.zeros(0)
-    return np.array([env.goal[i, 0], 0.0, env.goal[i, 1]])
+    goal = env.situation().goal
+    return np.array([goal.home_x[i], 0.0, goal.home_z[i]])
 
 
 def _batch(env: Any) -> Any:

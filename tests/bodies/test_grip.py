@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from elastica_gym.bodies import grip, octopus, snake
-from elastica_gym.bodies.body import feel, make_pose
+from elastica_gym.bodies.body import make_pose, observe
 from elastica_gym.bodies.grip import DEEPEST, TOUCH, arm_elements
+from elastica_gym.bodies.observation import Layout
 from elastica_gym.engine import at_rest
 from elastica_gym.engine.model import make_state
 
@@ -198,9 +199,10 @@ def test_gaps_are_those_that_the_animal_feels(body):
     axis = rng.normal(size=(n, 3))
     state.body_Q[:, 0, 2] = axis / np.linalg.norm(axis, axis=1, keepdims=True)
     pose = make_pose(n, 1)
-    low, high = np.array([bounds for _, *bounds in body.readings()], dtype=np.float32).T.copy()
+    layout = Layout(body.blocks())
+    low, high = layout.low, layout.high
     readings = np.zeros((n, low.size), dtype=np.float32)
-    feel(body.model, state, np.zeros((n, 42)), body.senses, pose, low, high, readings, np.arange(n))
+    observe(body.model, state, np.zeros((n, 42)), body.senses, pose, low, high, readings, np.arange(n))
     found = grip(body, state)
     np.testing.assert_allclose(found.gaps.min(axis=1), pose.gaps[:, 0], atol=1e-14)
     np.testing.assert_array_equal(found.head_gap, found.gaps[:, 50:70].min(axis=1))

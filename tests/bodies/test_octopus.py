@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from elastica_gym.bodies import octopus
-from elastica_gym.bodies.body import feel, make_pose
+from elastica_gym.bodies.body import make_pose, observe
+from elastica_gym.bodies.observation import Layout
 from elastica_gym.bodies.octopus import HEAD, HEAD_RADIUS, MIDDLE
 from elastica_gym.engine import advance, at_rest, build_model
 from elastica_gym.engine.kernels.contact.law import overlap
@@ -140,13 +141,14 @@ def test_nothing_goes_through_anything(body, scene, seed):
     state, control = scene
     rng = np.random.default_rng(seed)
     state.body_x[0, 0, [0, 2]] = [[0.02, 0.32], [0.06, -0.36], [-0.2, 0.1], [0.2, -0.2]][seed]
-    low, high = np.array([bounds for _, *bounds in body.readings()], dtype=np.float32).T.copy()
+    layout = Layout(body.blocks())
+    low, high = layout.low, layout.high
     pose, readings = make_pose(1, 1), np.zeros((1, low.size), dtype=np.float32)
     rod_touched = body_touched = 0.0
     for _ in range(6):
         # what strikes at 5 m/s goes 8 mm between two looks
         for _ in play(body, state, control, np.sign(rng.uniform(-1.0, 1.0, 42)), 0.3, parts=31):
-            feel(body.model, state, np.zeros((1, 42)), body.senses, pose, low, high, readings, np.arange(1))
+            observe(body.model, state, np.zeros((1, 42)), body.senses, pose, low, high, readings, np.arange(1))
             assert pose.sound[0] == 1
             assert pose.gaps[0, 0] > -5e-3
             assert ground_clearance(body, state) > -5e-3

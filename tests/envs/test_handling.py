@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
-from elastica_gym.envs.handling import FEWEST, KEPT, WRAPPED, Handling, now
+from elastica_gym.envs.handling import FEWEST, KEPT, WRAPPED, Handling
 
 from .conftest import random_actions
 
@@ -17,10 +17,10 @@ def test_what_is_held_at_the_start_is_wrapped_and_stays_so(make_vec):
     env.reset(seed=0)
     levels = env.levels.copy()
     assert set(levels[:, [0, 7]].argmax(axis=1)) == {0, 1}
-    assert (now(env.situation()).span > WRAPPED).all()
+    assert (env.situation().progress.span > WRAPPED).all()
     for _ in range(10):
         _, _, terminated, _, _ = env.step(levels)
-    held = now(env.situation())
+    held = env.situation().progress
     assert not terminated.any() and (held.span > WRAPPED).all() and (held.grabbed == 1.0).all()
     assert np.degrees(held.tilt).max() < 10.0
 
@@ -57,7 +57,7 @@ def test_moving_counts_only_while_touched(make_vec):
     # so short a step moves nothing
     env.n_substeps, env.sim_dt = 1, 1e-9
     env.step(env.levels.copy())
-    after = now(env.situation())
+    after = env.situation().progress
     np.testing.assert_allclose(after.moved_z, [0.02, 0.0], atol=1e-6)
     np.testing.assert_allclose(after.moved_x, 0.0, atol=1e-6)
 

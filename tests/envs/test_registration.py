@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import gymnasium
+import numpy as np
 import pytest
 
 import elastica_gym
@@ -64,7 +65,6 @@ def test_a_spec_of_a_task_that_is_not_registered_says_what_is_missing():
     ("changed", "message"),
     [
         ({"starts": {}}, "starts must have at least one"),
-        ({"goal_bounds": ()}, r"goal_bounds must have .* each of \('distance_to_make',\), not \(\)"),
         ({"reward_weights": {"away": 1.0}}, "reward_weights must have a weight for each of .*diverged, not for away"),
         ({"failures": {"success": AWAY.succeeds}}, "failures must have other names than running, .*, not success"),
     ],
@@ -75,9 +75,9 @@ def test_declarations_that_cannot_be_are_refused(changed, message):
 
 
 def test_a_goal_that_is_seen_in_another_width_than_declared_is_refused():
-    wrong = replace(AWAY, see_goal=lambda situation: situation.goal)
+    wrong = replace(AWAY, observe_goal=lambda situation: np.stack(situation.goal, axis=1))
     for env in (BatchEnv(wrong), SingleEnv(wrong)):
-        with pytest.raises(ValueError, match=r"see_goal of SnakeAway must return \(1, 1\), .* not \(1, 3\)"):
+        with pytest.raises(ValueError, match=r"observe_goal of SnakeAway must return \(1, 1\), .* not \(1, 3\)"):
             env.reset(seed=0)
 
 

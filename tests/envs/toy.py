@@ -1,27 +1,37 @@
 """A task that is declared and registered outside the package, as a user would."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 import elastica_gym
 from elastica_gym.bodies import snake
+from elastica_gym.bodies.observation import single
 from elastica_gym.envs import Task, goal_conditioned
 from elastica_gym.envs.starts import draw_start
+from elastica_gym.envs.tasks import snake_reach
 from elastica_gym.scripted import register_script
 from elastica_gym.scripted.gaits import snake_crawl
 
 TOY, TOY_GOAL = "tests/SnakeAway-v0", "tests/SnakeAwayGoal-v0"
 
 
-def draw_start_place(rng, situation):
-    return np.array([*situation.pose.centre[0, [0, 2]], rng.uniform(0.1, 0.2)])
+class Goal(NamedTuple):
+    start_x: np.ndarray
+    start_z: np.ndarray
+    way: np.ndarray
 
 
-def see_speed(situation):
-    return situation.goal[:, 2:]
+def sample_start_place(rng, situation):
+    return Goal(*situation.pose.centre[0, [0, 2]], rng.uniform(0.1, 0.2))
+
+
+def observe_way(situation):
+    return situation.goal.way[:, None]
 
 
 def from_start(centre, goal):
-    return np.hypot(centre[:, 0] - goal[:, 0], centre[:, 2] - goal[:, 1])
+    return np.hypot(centre[:, 0] - goal.start_x, centre[:, 2] - goal.start_z)
 
 
 def distance(situation):
@@ -29,6 +39,7 @@ def distance(situation):
 
 
 def away(situation):
+    """Return the way made from the start in this step, in body lengths, (B,)."""
     return (distance(situation) - from_start(situation.before.centre, situation.goal)) / situation.body.senses.length
 
 
@@ -37,7 +48,7 @@ def lost(situation):
 
 
 def is_away(situation):
-    return distance(situation) > situation.goal[:, 2]
+    return distance(situation) > situation.goal.way
 
 
 def no_target(goal):
@@ -48,9 +59,9 @@ def crawl_on(env):
     return snake_crawl(env, np.zeros(env.num_envs))
 
 
-def draw_goal_nearby(rng, situation):
+def sample_goal_nearby(rng, situation):
     place = situation.pose.head[0, [0, 2]] + rng.uniform(-0.1, 0.1, 2)
-    return np.array([*place, np.hypot(*(place - situation.pose.head[0, [0, 2]]))])
+    return snake_reach.Goal(*place, np.hypot(*(place - situation.pose.head[0, [0, 2]])))
 
 
 AWAY = Task(
@@ -58,11 +69,10 @@ AWAY = Task(
     make_body=snake,
     duration=5.0,
     starts={"bent": draw_start},
-    goal_size=3,
-    draw_goal=draw_start_place,
-    goal_names=("distance_to_make",),
-    goal_bounds=((0.0, 1.0),),
-    see_goal=see_speed,
+    goal_type=Goal,
+    sample_goal=sample_start_place,
+    goal_blocks=(single("distance_to_make", 0.0, 1.0, "m", "distance to make"),),
+    observe_goal=observe_way,
     reward_terms={"away": away},
     reward_weights={"away": 10.0, "diverged": -5.0},
     distance=distance,
@@ -74,4 +84,4 @@ AWAY = Task(
 
 elastica_gym.register(TOY, AWAY)
 register_script(AWAY.name, crawl_on)
-elastica_gym.register(TOY_GOAL, goal_conditioned(AWAY, draw_goal=draw_goal_nearby, tolerance=0.05))
+elastica_gym.register(TOY_GOAL, goal_conditioned(AWAY, sample_goal=sample_goal_nearby, tolerance=0.05))

@@ -8,8 +8,8 @@ import pytest
 from gymnasium.vector import AutoresetMode
 
 import agents
-from elastica_gym.envs.handling import Handling, now
-from elastica_gym.envs.tasks.octopus_fetch import see_goal
+from elastica_gym.envs.handling import Handling
+from elastica_gym.envs.tasks.octopus_fetch import observe_goal
 from elastica_gym.rl.policy_file import FilePolicy
 from elastica_gym.scripted import octopus_fetch as octopus_script
 
@@ -49,7 +49,7 @@ def test_the_file_does_what_the_script_does(make):
 def test_the_file_tells_by_the_goal_whether_it_holds_the_object(make):
     batch = make("elastica_gym/OctopusReturn-v1")
     observations, _ = batch.reset(seed=[3, 4])
-    assert (now(batch.situation()).grabbed == 1.0).all()
+    assert (batch.situation().progress.grabbed == 1.0).all()
     policy = FilePolicy(POLICY)
     policy.reset([0, 0])
     sight, home = octopus_script.see(observations), observations[:, 208:210].astype(float)
@@ -69,7 +69,7 @@ def test_it_carries_the_object_away_until_it_has_crawled(make):
     for grabbed, crawled, sign in ((1.0, 0.0, -1.0), (1.0, 1.0, 1.0)):
         batch.progress[:, names["grabbed"]], batch.progress[:, names["crawled"]] = grabbed, crawled
         observations = batch.observations
-        observations[:, 206:210] = see_goal(batch.situation())
+        observations[:, 206:210] = observe_goal(batch.situation())
         np.testing.assert_allclose(octopus_script.see(observations).goal, sign * home, atol=1e-6)
 
 
@@ -79,7 +79,7 @@ def test_what_the_script_sees_is_where_things_are(make):
     for _ in range(6):
         batch.step(octopus_script.fetch(batch))
     sight, situation = octopus_script.see(batch.observations), batch.situation()
-    handled, head = now(situation), situation.pose.head
+    handled, head = situation.progress, situation.pose.head
     away = np.hypot(handled.base_x - head[:, 0], handled.base_z - head[:, 2])
     np.testing.assert_allclose(np.hypot(sight.ahead, sight.right), away, atol=1e-5)
     np.testing.assert_allclose(sight.levels, batch.levels, atol=1e-6)

@@ -1,95 +1,17 @@
 """OctopusGrab: wrap an arm around the object by 200 degrees and hold it so for 0.5 s, within 10 s.
 
-Description
------------
 The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground that holds it alike in all directions, and
 a cylinder of 4 kg, 0.6 m high and 0.1 m thick, that stands free. An arm that bends at full strength with the
 object in its bend holds it; but the object has to be there.
 
-Action
-------
-``Box(-1, 1, (42,), float32)``: the activations that the muscles are commanded to, held for a control
-step and clipped to the range. Muscles follow with a time constant of 0.06 s. See `elastica_gym.bodies.muscles`.
-
-| index | direction | arm | function |
-|---|---|---|---|
-| 0-6, 7-13 | about the normal: bends sideways | first, second | level 0, then 2 of level 1, then 4 of level 2 |
-| 14-20, 21-27 | about the binormal: lifts | first, second | the same |
-| 28-34, 35-41 | about the tangent: twists | first, second | the same |
-
-Functions are counted from the head to the tip. An action of another shape, or one that holds NaN, raises ValueError.
-
-Observation
------------
-``Box(float32)``, clipped to its range. All directions are in the frame of the head: forward is the
-horizontal direction of its axis, from the first arm to the second, right is to its right seen from above
-with y up. At rest the arms point half to the left.
-
-| index | meaning | unit | range |
-|---|---|---|---|
-| 0-32 | position of 11 nodes, tip to tip, from the centre of mass: forward, up, right | body length | -1 to 1 |
-| 33-65 | their velocity: forward, up, right of each | body lengths/s | -20 to 20 |
-| 66-101 | curvature about the normal and binormal, and twist, at 12 places, from tip to tip | 10/m | -10 to 10 |
-| 102-125 | up component of normal and binormal there: how the body has rolled | 1 | -1 to 1 |
-| 126-136 | force with which the ground carries each of 11 parts, tip to tip | an 11th of the weight | 0 to 50 |
-| 137-147 | force with which the object touches each of them | an 11th of the weight | 0 to 50 |
-| 148-150 | the object's centre, from the head: forward, up, right | body length | -4 to 4 |
-| 151-153 | its axis, from foot to top at the start: forward, up, right | 1 | -1 to 1 |
-| 154-156 | its velocity: forward, up, right | body lengths/s | -20 to 20 |
-| 157-159 | its angular velocity: about forward, up, right | rad/s | -50 to 50 |
-| 160 | gap between its surface and the animal's | body length | -1 to 4 |
-| 161-202 | activation that each muscle has reached, in the order of the actions | 1 | -1 to 1 |
-| 203-204 | sine and cosine of a clock with a period of 1 s | 1 | -1 to 1 |
-| 205 | part of the episode that is left | 1 | 0 to 1 |
-| 206-207 | direction from the head to the object: forward and right component of a unit vector | 1 | -1 to 1 |
-| 208-209 | way from the head to where it was at the start, its home: forward and right | body length | -4 to 4 |
-
-Rewards
--------
-The sum of these terms, each of which is in the info as ``reward_<term>`` with its weight:
-
-| term | weight | formula, a control step |
-|---|---|---|
-| approach | 10 | by how much the gap between an arm's inner half and the object has shrunk, in body lengths |
-| wind | 5 | by how much the angle that an arm winds around the object has grown, up to 200 degrees, in radians |
-| wrap | 5 | by how much the angle around the object has grown, up to 200 degrees, in radians |
-| success | 10 | 1 where the object is grabbed |
-| early | 10 | at success, the part of the episode that is left |
-| effort | 0.1 | minus the mean square of the commanded activations, times the step's duration in seconds |
-| toppled | -10 | 1 where the head has rolled or pitched by more than 60 degrees |
-| fallen | -10 | 1 where the object leans by more than 45 degrees |
-| diverged | -10 | 1 where the simulation has diverged, and then all other terms are 0 |
-
+Notes
+-----
 An arm's inner half is the one next to the head. The angle is that which the touching elements of an arm, at least
 five, span around the object's axis, from the first to the last of them, followed along the arm; of two arms the
 larger. Touching are surfaces with less than 2 mm between them. What an arm winds around the object is that angle of
 all its elements, each part of it times how near they are: 1 where they touch, falling to 0 at a gap of 0.15 m. The
 object is grabbed when an arm spans 200 degrees or more at the ends of all control steps in 0.5 s. Approach, wind and
-wrap are differences of what is so far, so letting go and taking hold again earns nothing. The info also has
-``distance``, the length of the object's circumference that is wrapped [m]; ``is_success``; and ``termination_reason``,
-a number: 0 running, 1 time_limit, 2 success, 3 diverged, 4 toppled or 5 fallen.
-
-Starting state
---------------
-All is drawn from the environment's own generator: the heading, uniform; the shape, the resting one bent
-sideways by three sine waves of couple, whose curvature at the tips has normal amplitudes of 0.7, 0.35 and 0.175
-1/m; a horizontal velocity with a standard deviation of 0.02 m/s; and the object, upright, at 0.4 m straight to
-the right of the head (``spread="default"``), at 0.4 m and a bearing uniform from straight ahead to straight to
-the right (``"arc"``), at 0.4 to 0.8 m and any bearing (``"anywhere"``), or 0.2 to 0.4 m and any bearing
-(``"near"``), drawn again where it would stand in the animal. Muscles are at rest.
-
-Episode end
------------
-Terminated at success. Truncated after 10 s, which are 200 control steps. Terminated if the head rolls or
-pitches by more than 60 degrees, since a ball rolls further than it crawls; if the object leans by more than 45
-degrees, since what has fallen cannot be set up again; and if numbers stop being finite, or a node or the object
-is faster than 50 m/s: then the last sound observation is returned.
-
-Arguments
----------
-Those of `elastica_gym.envs.BatchEnv`: ``control_dt`` (0.05 s), ``sim_dt`` (0.00016 s), ``duration``,
-``max_episode_steps``, ``n_threads``, ``weights``, ``spread`` ("default", "arc", "anywhere" or "near"),
-``render_mode``, ``render_size``; and of `make_vec` ``autoreset_mode``.
+wrap are differences of what is so far, so letting go and taking hold again earns nothing.
 
 Version history
 ---------------
@@ -100,14 +22,14 @@ v0: the first; withdrawn.
 import numpy as np
 
 from ...engine.model import Array
-from ..handling import approach, fallen, handling_task, now, see_object, wind, wrap
+from ..handling import TO_OBJECT, approach, fallen, handling_task, observe_object, wind, wrap
 from ..starts import OBJECT_STARTS, with_object_nearby
-from ..task import Mask, Situation, effort, toppled
+from ..task import HOME, Mask, Situation, effort, toppled
 
 
 def succeeds(situation: Situation) -> Mask:
     """Return whether the object is grabbed, (B,) bool."""
-    return now(situation).grabbed == 1.0
+    return situation.progress.grabbed == 1.0
 
 
 def success(situation: Situation) -> Array:
@@ -122,14 +44,16 @@ def early(situation: Situation) -> Array:
 
 def distance(situation: Situation) -> Array:
     """Return the length of the object's circumference that is wrapped [m], (B,)."""
-    return now(situation).span * situation.body.cylinders[0].radius
+    return situation.progress.span * situation.body.cylinders[0].radius
 
 
 TASK = handling_task(
     name="OctopusGrab",
+    description=__doc__,
     duration=10.0,
     starts={name: OBJECT_STARTS[name] for name in ("default", "arc", "anywhere")} | {"near": with_object_nearby},
-    see_goal=see_object,
+    goal_blocks=(TO_OBJECT, HOME),
+    observe_goal=observe_object,
     reward_terms={
         "approach": approach,
         "wind": wind,
