@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..engine.builder import plane_table
 from ..engine.kernels.simulate import DENSE, SPARSE, UNLOADED
-from ..engine.model import BLOCK, ROOM, Array, Index, Model, Waves, aligned_zeros
+from ..engine.model import BLOCK, ROOM, Array, Index, Joints, Model, Waves, aligned_zeros
 from ..engine.scene import (
     BodyContacts,
     Clamps,
@@ -22,7 +22,6 @@ from ..engine.scene import (
     Drag,
     Filters,
     Flows,
-    Joints,
     Pins,
     PointLoads,
     Rings,

@@ -1,6 +1,6 @@
 """The physics of Cosserat rods on arrays, which knows neither PyElastica nor reinforcement learning.
 
-Rods and what surrounds them are described by `Rod`, `Plane`, `Cylinder`, `Contact` and `Wave`. `build_model` lays them
+`Rod`, `Plane`, `Cylinder`, `Contact`, `Joint` and `Wave` describe rods and what acts on them. `build_model` lays them
 out in a `Model`, `at_rest` gives a batch of states, and `advance` steps it.
 """
 
@@ -8,12 +8,13 @@ from .builder import at_rest, build_model
 from .kernels.step import advance
 from .model import Control, Model, State, make_control, make_state
 from .rod import Rod, stable_time_step
-from .surroundings import Contact, Cylinder, Plane, Wave
+from .surroundings import Contact, Cylinder, Joint, Plane, Wave
 
 __all__ = [
     "Contact",
     "Control",
     "Cylinder",
+    "Joint",
     "Model",
     "Plane",
     "Rod",

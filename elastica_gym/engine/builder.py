@@ -14,6 +14,7 @@ from .model import (
     Control,
     Cylinders,
     Index,
+    Joints,
     Model,
     Planes,
     RodContact,
@@ -24,7 +25,7 @@ from .model import (
     make_state,
 )
 from .rod import Continuum, require_finite, require_not_negative
-from .surroundings import Contact, Cylinder, Plane, Wave, net_couple
+from .surroundings import Contact, Cylinder, Joint, Plane, Wave, net_couple
 
 
 def build_model(
@@ -40,6 +41,8 @@ def build_model(
     is_reciprocal: bool = False,
     cylinders: Sequence[Cylinder] = (),
     rod_contact: Contact | None = None,
+    joints: Sequence[Joint] = (),
+    clamped: Sequence[int] = (),
 ) -> Model:
     """Lay rods out one after another and collect what acts on them.
 
@@ -71,11 +74,15 @@ def build_model(
     rod_contact : Contact, optional
         How elements of two rods touch, and those of one that are far enough from each other along
         it; without, rods pass through rods.
+    joints : sequence of Joint
+        Between the ends of rods.
+    clamped : sequence of int
+        Numbers of the rods whose first node and first element are held as they are.
 
     Raises
     ------
     ValueError
-        If there are no rods, or a wave names a rod that does not exist.
+        If there are no rods, or a wave, a joint or ``clamped`` names a rod that does not exist.
     """
     if not rods:
         raise ValueError("rods is empty; a model needs at least one")
@@ -93,6 +100,11 @@ def build_model(
     fields["inv_rest_length"][:] = fields["inv_rest_voronoi_length"][:] = 1.0
     for rod, start in zip(rods, first, strict=True):
         lay_out(fields, rod, int(start))
+    for number in clamped:
+        start = int(first[_rod_number("clamped", number, rods)])
+        # what has no inverse mass and inertia is not moved by any load
+        fields["inv_mass"][start] = 0.0
+        fields["inv_inertia"][:, start] = 0.0
     return Model(
         first_slot=first.astype(np.int64),
         n_elements=counts.astype(np.int64),
@@ -107,6 +119,7 @@ def build_model(
         planes=plane_table(planes),
         waves=_wave_table(waves, rods, first, slots),
         cylinders=_cylinder_table(cylinders),
+        joints=_joint_table(joints, rods, first),
         rod_contact=_rod_contact(rod_contact, rods, first, slots),
     )
 
@@ -216,6 +229,40 @@ def _cylinder_table(cylinders: Sequence[Cylinder]) -> Cylinders:
         rod_friction=rods("friction"),
         rod_slip_damping=rods("slip_damping"),
     )
+
+
+def _joint_table(joints: Sequence[Joint], rods: Sequence[Continuum], first: np.ndarray) -> Joints:
+    nodes, elements = np.zeros((2, len(joints), 2), dtype=np.int64)
+    rest = np.zeros((len(joints), 3, 3))
+    for j, joint in enumerate(joints):
+        directors = []
+        for side, (number, end) in enumerate(zip(joint.rods, joint.ends, strict=True)):
+            rod, start = rods[_rod_number("rods of a joint", number, rods)], int(first[number])
+            element = 0 if end == 0 else rod.n_elements - 1
+            nodes[j, side], elements[j, side] = start + (0 if end == 0 else rod.n_elements), start + element
+            directors.append(rod.directors[:, :, element])
+        rest[j] = directors[0] @ directors[1].T
+
+    def column(name: str) -> Array:
+        return np.array([getattr(joint, name) for joint in joints], dtype=np.float64)
+
+    return Joints(
+        node=nodes,
+        element=elements,
+        stiffness=column("stiffness"),
+        damping=column("damping"),
+        hinge_stiffness=np.zeros(len(joints)),
+        axis=np.zeros((len(joints), 3)),
+        turn_stiffness=column("turn_stiffness"),
+        turn_damping=column("turn_damping"),
+        rest_rotation=rest,
+    )
+
+
+def _rod_number(what: str, number: int, rods: Sequence[Continuum]) -> int:
+    if not 0 <= number < len(rods):
+        raise ValueError(f"{what} must be numbers from 0 to {len(rods) - 1}, not {number}")
+    return number
 
 
 def _rod_contact(contact: Contact | None, rods: Sequence[Continuum], first: np.ndarray, slots: int) -> RodContact:

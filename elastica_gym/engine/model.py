@@ -112,6 +112,29 @@ class RodContact(NamedTuple):
     """The last slot before an element at and before which none is too near to touch it, a whole number, (L,)"""
 
 
+class Joints(NamedTuple):
+    """The C joints, each between a node and element one and a node and element two."""
+
+    node: Index
+    """Places of the two nodes, (C, 2) int64"""
+    element: Index
+    """Places of the two elements, (C, 2) int64"""
+    stiffness: Array
+    """Force per distance k [N/m], (C,)"""
+    damping: Array
+    """Force per relative velocity nu [N s/m], (C,)"""
+    hinge_stiffness: Array
+    """Torque that turns element two back into the plane across ``axis``, kt [N m], 0 for none; (C,)"""
+    axis: Array
+    """Unit normal of that plane, lab frame, (C, 3)"""
+    turn_stiffness: Array
+    """Torque per angle from the rest rotation, kt [N m], 0 for none; (C,)"""
+    turn_damping: Array
+    """Torque per relative angular velocity [N m s], (C,)"""
+    rest_rotation: Array
+    """C with Q1 = C Q2 at rest, (C, 3, 3)"""
+
+
 class Model(NamedTuple):
     """What does not change during an episode."""
 
@@ -171,6 +194,8 @@ class Model(NamedTuple):
     planes: Planes
     waves: Waves
     cylinders: Cylinders
+    joints: Joints
+    """Joints of rods"""
     rod_contact: RodContact
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .model import Array, Index, Planes, Waves
+from .model import Array, Index, Joints, Planes, Waves
 
 
 class PointLoads(NamedTuple):
@@ -77,29 +77,6 @@ class Drag(NamedTuple):
     """Per velocity of the node [N s/m], (L,)"""
     torque: Array
     """Per angular velocity of the element [N m s], (L,)"""
-
-
-class Joints(NamedTuple):
-    """The C joints, each between a node and element one and a node and element two."""
-
-    node: Index
-    """Places of the two nodes, (C, 2) int64"""
-    element: Index
-    """Places of the two elements, (C, 2) int64"""
-    stiffness: Array
-    """Force per distance k [N/m], (C,)"""
-    damping: Array
-    """Force per relative velocity nu [N s/m], (C,)"""
-    hinge_stiffness: Array
-    """Torque that turns element two back into the plane across ``axis``, kt [N m], 0 for none; (C,)"""
-    axis: Array
-    """Unit normal of that plane, lab frame, (C, 3)"""
-    turn_stiffness: Array
-    """Torque per angle from the rest rotation, kt [N m], 0 for none; (C,)"""
-    turn_damping: Array
-    """Torque per relative angular velocity [N m s], (C,)"""
-    rest_rotation: Array
-    """C with Q1 = C Q2 at rest, (C, 3, 3)"""
 
 
 class Sides(NamedTuple):

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .model import Array, Index, Model, Planes
-from .scene import BodyContacts, Drag, Flows, Joints, RodContacts, Scene, Sides
+from .model import Array, Index, Joints, Model, Planes
+from .scene import BodyContacts, Drag, Flows, RodContacts, Scene, Sides
 
 SOMEWHAT = 0.5
 """The quantile of a rod's elements that a contact is judged by: some of a tapered rod are far lighter than others"""
@@ -50,7 +50,7 @@ def limits(
     """
     masses = _Masses(model, rods, bodies)
     everywhere = np.full((model.planes.stiffness.size, 2), (0, model.mass.size))
-    found = [*_viscosity(masses), *_planes(masses, model.planes, everywhere)]
+    found = [*_viscosity(masses), *_planes(masses, model.planes, everywhere), *_joints(masses, model.joints)]
     if model.rod_contact.is_on:
         law, every = model.rod_contact, range(model.first_slot.size)
         found += _rods(masses, [(i, j, law.stiffness, law.damping) for i in every for j in every[i:]])

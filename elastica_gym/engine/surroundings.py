@@ -101,6 +101,46 @@ class Contact:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Joint:
+    """A joint between an end of one rod and an end of another (Zhang et al. 2019).
+
+    Attributes
+    ----------
+    rods : tuple of int
+        Numbers of the two rods.
+    ends : tuple of int
+        The end of each: 0 for its first node and element, -1 for its last.
+    stiffness : float
+        Force per distance of the two nodes k [N/m].
+    damping : float
+        Force per relative velocity nu [N s/m].
+    turn_stiffness : float
+        Torque per angle by which the two elements have turned from how they were described [N m]; 0 leaves them free.
+    turn_damping : float
+        Torque per relative angular velocity [N m s].
+
+    Raises
+    ------
+    ValueError
+        If an argument is invalid.
+    """
+
+    rods: tuple[int, int]
+    ends: tuple[int, int]
+    stiffness: float
+    damping: float = 0.0
+    turn_stiffness: float = 0.0
+    turn_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        if len(self.rods) != 2 or len(self.ends) != 2 or not set(self.ends) <= {0, -1}:
+            raise ValueError(f"rods and ends must be of two rods, each end 0 or -1, not {self.rods} and {self.ends}")
+        require_positive("stiffness", self.stiffness)
+        for name in ("damping", "turn_stiffness", "turn_damping"):
+            require_not_negative(name, getattr(self, name))
+
+
+@dataclass(frozen=True, kw_only=True)
 class Cylinder:
     """A free rigid cylinder: it has weight, stands, tips, rolls and slides on planes, and rods push it.
 

@@ -10,6 +10,7 @@ from .bodies import drift_bodies, kick_bodies, orthonormalise_bodies, weigh_bodi
 from .contact.cylinders import cylinders_on_planes, rods_on_cylinders
 from .contact.plane import slide, slip, stick, to_nodes, touch
 from .contact.rods import rods_on_rods
+from .joints import join
 from .queue import take
 from .rod.curvature import bending, logarithm, relative_rotation
 from .rod.dynamics import dynamics
@@ -90,6 +91,9 @@ def applied(model, state, control, i, n, time):
         strength = time / ramp if time < ramp else 1.0
         wave(FIRST, n, strength, waves.angular_frequency[j] * time, waves.axis[j], waves.sine[j], waves.cosine[j],
              matrix(s.Q[i]), torque)  # fmt: skip
+    if m.joints.stiffness.size > 0:
+        join(m.joints, s.x[i], s.v[i], s.Q[i], s.w[i], s.force[i], s.torque[i], s.body_x[i], s.body_v[i],
+             s.body_Q[i], s.body_w[i], s.body_force[i], s.body_torque[i])  # fmt: skip
 
 
 @inner
