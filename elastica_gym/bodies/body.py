@@ -134,9 +134,10 @@ class Body:
                   f"curvature about the normal and binormal, and twist, at {places} places, {order}"),
             Block("roll", each(places, ("normal", "binormal")), -1.0, 1.0, "1",
                   "up component of normal and binormal there: how the body has rolled"),
-            Block("contact", numbered, 0.0, 50.0, share,
-                  f"force with which the ground carries each of {patches} parts, {order}"),
         ]  # fmt: skip
+        if self.model.planes.stiffness.size:
+            carried = f"force with which the ground carries each of {patches} parts, {order}"
+            blocks.append(Block("contact", numbered, 0.0, 50.0, share, carried))
         if self.cylinders:
             blocks.append(Block("touch", numbered, 0.0, 50.0, share, "force with which objects touch each of them"))
         for b in range(len(self.cylinders)):
@@ -326,8 +327,9 @@ def _read(model, state, levels, senses, i, pose, row):
         for c in range(2):
             row[at] = state.Q[i, c, 1, senses.joints[j]]
             at += 1
-    _patches(row, at, state.normal_force[i], senses.skin, n_skin / senses.weight)
-    at += n_skin
+    if model.planes.stiffness.size > 0:
+        _patches(row, at, state.normal_force[i], senses.skin, n_skin / senses.weight)
+        at += n_skin
     bodies = model.cylinders
     if bodies.mass.size > 0:
         _patches(row, at, state.body_touch[i], senses.skin, n_skin / senses.weight)

@@ -142,7 +142,7 @@ def goal_conditioned(
     Parameters
     ----------
     task : Task
-        Its name gets ``Goal`` at the end.
+        Its name gets ``Goal`` at the end. Its failures must not depend on its own goal.
     sample_goal : callable
         As of a `Task`; it returns a `Goal`.
     tolerance : float

@@ -9,6 +9,7 @@ from elastica_gym.rl.evaluation import evaluate
 from elastica_gym.rl.policies import BASELINES, baseline
 from tests.agents.commands import FORWARD, SMALL_PPO, run
 from tests.agents.test_bad_input import refused
+from tests.envs.tentacle_reach import TENTACLE
 from tests.envs.toy import TOY, TOY_GOAL
 
 MODULE = "tests.envs.toy"
@@ -24,11 +25,15 @@ def policy(observation):
 """
 
 
-def test_a_task_from_elsewhere_is_trained_and_evaluated(tmp_path):
+@pytest.mark.parametrize(
+    ("env_id", "term"), [(f"{MODULE}:{TOY}", "away"), (f"tests.envs.tentacle_reach:{TENTACLE}", "approach")]
+)
+def test_a_task_from_elsewhere_is_trained_evaluated_and_recorded(tmp_path, env_id, term):
+    """For an animal of the package, and for one from elsewhere."""
     folder = tmp_path / "run"
-    run("agents.train", "--env", f"{MODULE}:{TOY}", "--steps", 40, "--folder", folder, *SMALL_PPO)
-    output = run("agents.evaluate", "--run", folder, "--episodes", 2)
-    assert "reward: away" in output
+    run("agents.train", "--env", env_id, "--steps", 40, "--imitate", 40, "--folder", folder, *SMALL_PPO)
+    output = run("agents.evaluate", "--run", folder, "--episodes", 2, "--record", tmp_path / "seen")
+    assert f"reward: {term}" in output and list((tmp_path / "seen").glob("*.rrd"))
     run("agents.train", "--resume", folder, "--steps", 80)
 
 

@@ -2,20 +2,21 @@ import gymnasium
 import numpy as np
 import pytest
 
-from elastica_gym.envs import GOAL_IDS, IDS
+from elastica_gym.envs import GOAL_IDS, IDS, task_of
 
+from .tentacle_reach import TENTACLE
 from .toy import TOY, TOY_GOAL
 
 SHORT = 0.5
 """Episode in most tests [s]: ten control steps"""
 
 
-@pytest.fixture(params=(*IDS, TOY))
+@pytest.fixture(params=(*IDS, TOY, TENTACLE))
 def env_id(request):
     return request.param
 
 
-@pytest.fixture(params=(*IDS, TOY, *GOAL_IDS, TOY_GOAL))
+@pytest.fixture(params=(*IDS, TOY, TENTACLE, *GOAL_IDS, TOY_GOAL))
 def any_id(request):
     """Also those whose observation is a dict: for tests that do not look into it."""
     return request.param
@@ -35,8 +36,14 @@ def make_vec():
         env.close()
 
 
-def random_actions(seed, steps, num_envs=1):
-    return np.random.default_rng(seed).uniform(-1.0, 1.0, (steps, num_envs, 42)).astype(np.float32)
+def random_actions(env_id, seed, steps, num_envs=1):
+    shape = (steps, num_envs, task_of(env_id).make_body().n_activations)
+    return np.random.default_rng(seed).uniform(-1.0, 1.0, shape).astype(np.float32)
+
+
+def still(env):
+    """Return the action that leaves the muscles at rest."""
+    return np.zeros(env.action_space.shape)
 
 
 def flat(observations):

@@ -9,7 +9,7 @@ from gymnasium.wrappers.vector import RecordEpisodeStatistics
 from elastica_gym.envs import TerminationReason
 from elastica_gym.scripted import scripted_policy
 
-from .conftest import SHORT, flat
+from .conftest import SHORT, flat, still
 
 STEPS = 10
 
@@ -20,7 +20,7 @@ def lengths(env, num_envs, total):
     next_step = env.metadata["autoreset_mode"] == AutoresetMode.NEXT_STEP
     begun = np.zeros(num_envs, dtype=bool)
     for _ in range(total):
-        _, _, terminated, truncated, _ = env.step(np.zeros((num_envs, 42)))
+        _, _, terminated, truncated, _ = env.step(still(env))
         count += ~begun
         ended = terminated | truncated
         found += count[ended].tolist()
@@ -36,7 +36,7 @@ def test_episodes_are_equally_long_through_make_and_make_vec(any_id, make_vec, m
     assert lengths(env, 2, 23) == [STEPS] * 4
     single = gymnasium.make(any_id, duration=SHORT)
     single.reset(seed=0)
-    ends = [single.step(np.zeros(42))[2:4] for _ in range(STEPS)]
+    ends = [single.step(still(single))[2:4] for _ in range(STEPS)]
     assert ends == [(False, False)] * (STEPS - 1) + [(False, True)]
     single.close()
 
@@ -47,8 +47,8 @@ def test_same_step_returns_the_last_observation_aside(env_id, make_vec):
     first, _ = same.reset(seed=0)
     disabled.reset(seed=0)
     for _ in range(STEPS):
-        now, reward, _, truncated, info = same.step(np.zeros((3, 42)))
-        expected = disabled.step(np.zeros((3, 42)))
+        now, reward, _, truncated, info = same.step(still(same))
+        expected = disabled.step(still(disabled))
     assert truncated.all() and info["_final_obs"].all()
     np.testing.assert_array_equal(np.stack(list(info["final_obs"])), expected[0])
     np.testing.assert_array_equal(reward, expected[1])
@@ -61,7 +61,7 @@ def test_same_step_returns_the_last_observation_aside(env_id, make_vec):
 def test_an_automatic_episode_equals_one_asked_for(any_id, make_vec, mode):
     automatic, asked = (make_vec(any_id, 2, autoreset_mode=m) for m in (mode, AutoresetMode.DISABLED))
     # an octopus topples if it clenches
-    gently = np.full((2, 42), 0.05)
+    gently = still(automatic) + 0.05
     for env in (automatic, asked):
         env.reset(seed=0)
         for _ in range(STEPS):
@@ -80,9 +80,9 @@ def test_next_step_begins_with_the_step_after_the_end(any_id, make_vec):
     env.reset(seed=0)
     asked.reset(seed=0)
     for _ in range(STEPS):
-        _, _, _, truncated, _ = env.step(np.zeros((2, 42)))
+        _, _, _, truncated, _ = env.step(still(env))
     assert truncated.all()
-    _, reward, terminated, truncated, _ = env.step(np.ones((2, 42)))
+    _, reward, terminated, truncated, _ = env.step(still(env) + 1.0)
     asked.reset()
     assert (reward == 0.0).all() and not (terminated | truncated).any()
     assert (env.elapsed == 0).all() and np.array_equal(env.levels, asked.levels)
@@ -91,7 +91,7 @@ def test_next_step_begins_with_the_step_after_the_end(any_id, make_vec):
 def test_disabled_resets_only_where_asked(any_id, make_vec):
     env = make_vec(any_id, 3, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
-    before = flat(env.step(np.ones((3, 42)))[0])
+    before = flat(env.step(still(env) + 1.0)[0])
     after = flat(env.reset(options={"reset_mask": np.array([False, True, False])})[0])
     np.testing.assert_array_equal(after[[0, 2]], before[[0, 2]])
     assert env.elapsed.tolist() == [1, 0, 1]
@@ -122,8 +122,8 @@ def reset_and_steps(env, steps, zeros):
 def test_reset_and_every_step_have_an_info_of_the_same_form(any_id, make_vec, mode):
     env = make_vec(any_id, 2, autoreset_mode=mode)
     single = gymnasium.make(any_id, duration=SHORT)
-    together = reset_and_steps(env, STEPS + 1, np.zeros((2, 42)))
-    alone = reset_and_steps(single, STEPS, np.zeros(42))
+    together = reset_and_steps(env, STEPS + 1, still(env))
+    alone = reset_and_steps(single, STEPS, still(single))
     for info in together:
         forms = {name: (value.shape, value.dtype) for name, value in info.items() if "final" not in name}
         assert forms == {name: (value.shape, value.dtype) for name, value in together[0].items()}
@@ -142,7 +142,7 @@ def test_reset_and_every_step_have_an_info_of_the_same_form(any_id, make_vec, mo
 @pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
 def test_an_episode_that_begins_by_itself_has_the_info_of_a_reset(any_id, make_vec, mode):
     env = make_vec(any_id, 2, autoreset_mode=mode)
-    first, *_ = infos = reset_and_steps(env, STEPS + (mode == AutoresetMode.NEXT_STEP), np.zeros((2, 42)))
+    first, *_ = infos = reset_and_steps(env, STEPS + (mode == AutoresetMode.NEXT_STEP), still(env))
     assert not first["is_success"].any() and (first["termination_reason"] == TerminationReason.RUNNING).all()
     for name in (f"reward_{term}" for term in env.task.reward_weights):
         assert (first[name] == 0.0).all() and (infos[-1][name] == 0.0).all()
@@ -155,7 +155,7 @@ def test_an_episode_that_begins_by_itself_has_the_info_of_a_reset(any_id, make_v
 def test_a_partial_reset_has_the_info_of_those_that_begin(any_id, make_vec):
     env = make_vec(any_id, 3, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
-    env.step(np.ones((3, 42)))
+    env.step(still(env) + 1.0)
     mask = np.array([False, True, False])
     info = env.reset(options={"reset_mask": mask})[1]
     assert all((info[name] == mask).all() for name in info if name.startswith("_"))
@@ -184,8 +184,8 @@ def truncated_after(env, shape, most=15):
 def test_max_episode_steps_and_duration_both_limit_episodes_however_they_are_made(any_id, arguments, steps):
     batch = gymnasium.make_vec(any_id, num_envs=2, autoreset_mode=AutoresetMode.DISABLED, **arguments)
     single = gymnasium.make(any_id, **arguments)
-    many, seen = truncated_after(batch, (2, 42))
-    one, alone = truncated_after(single, (42,))
+    many, seen = truncated_after(batch, batch.action_space.shape)
+    one, alone = truncated_after(single, single.action_space.shape)
     assert many == one == steps
     np.testing.assert_array_equal(seen[:, 0], alone)
     batch.close()
@@ -204,7 +204,7 @@ def test_gymnasiums_statistics_are_those_of_whole_episodes(any_id, make_vec, mod
     env.reset(seed=0)
     total, found = np.zeros(2), 0
     for _ in range(2 * STEPS + 3):
-        _, reward, terminated, truncated, info = env.step(np.full((2, 42), 0.05))
+        _, reward, terminated, truncated, info = env.step(still(env) + 0.05)
         total += reward
         if (ended := terminated | truncated).all():
             found += 1
@@ -241,8 +241,8 @@ def test_action_of_an_environment_that_begins_is_not_looked_at(any_id, make_vec)
     env = make_vec(any_id, 2, autoreset_mode=AutoresetMode.NEXT_STEP)
     env.reset(seed=0)
     for _ in range(STEPS):
-        env.step(np.zeros((2, 42)))
-    observations = env.step(np.full((2, 42), np.nan))[0]
+        env.step(still(env))
+    observations = env.step(still(env) + np.nan)[0]
     assert np.isfinite(flat(observations)).all()
 
 
@@ -251,10 +251,10 @@ def test_divergence_ends_only_its_own_environment(env_id, make_vec, mode):
     sick, sound = (make_vec(env_id, 3, autoreset_mode=mode) for _ in range(2))
     for env in (sick, sound):
         env.reset(seed=0)
-        last = env.step(np.full((3, 42), 0.3))[0]
+        last = env.step(still(env) + 0.3)[0]
     sick.state.v[1, :, 10] = np.nan
-    observations, rewards, terminated, truncated, info = sick.step(np.full((3, 42), 0.3))
-    expected = sound.step(np.full((3, 42), 0.3))
+    observations, rewards, terminated, truncated, info = sick.step(still(sick) + 0.3)
+    expected = sound.step(still(sound) + 0.3)
     np.testing.assert_array_equal(observations[[0, 2]], expected[0][[0, 2]])
     np.testing.assert_array_equal(rewards[[0, 2]], expected[1][[0, 2]])
     assert terminated.tolist() == [False, True, False] and not truncated.any()
@@ -270,5 +270,5 @@ def test_divergence_ends_only_its_own_environment(env_id, make_vec, mode):
     if mode == AutoresetMode.DISABLED:
         sick.reset(options={"reset_mask": terminated})
     for _ in range(2):
-        observations, _, terminated, _, _ = sick.step(np.zeros((3, 42)))
+        observations, _, terminated, _, _ = sick.step(still(sick))
     assert np.isfinite(observations).all() and not terminated.any()

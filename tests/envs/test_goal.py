@@ -8,7 +8,7 @@ from gymnasium.vector import AutoresetMode
 
 from elastica_gym.envs import GOAL_IDS, task_of
 
-from .conftest import SHORT, random_actions
+from .conftest import SHORT, random_actions, still
 from .toy import TOY_GOAL
 
 
@@ -24,7 +24,7 @@ def test_gymnasium_checker_accepts_it(goal_id, cannot_draw):
 
 
 def test_environment_of_a_batch_equals_the_single_one(goal_id, make_vec):
-    actions = random_actions(4, 10, 3)
+    actions = random_actions(GOAL_IDS[0], 4, 10, 3)
     batch = make_vec(goal_id, 3, autoreset_mode=AutoresetMode.DISABLED)
     single = gymnasium.make(goal_id, duration=SHORT)
     together, _ = batch.reset(seed=100)
@@ -47,7 +47,7 @@ def test_only_the_desired_goal_knows_the_goal(goal_id, make_vec):
     for each in (env, moved):
         each.reset(seed=0)
     moved.goal[:, :2] = moved.pose.head[:, [0, 2]]
-    action = random_actions(0, 1, 2)[0]
+    action = random_actions(GOAL_IDS[0], 0, 1, 2)[0]
     (first, _, _, _, _), (second, reward, terminated, _, _) = env.step(action), moved.step(action)
     np.testing.assert_array_equal(first["observation"], second["observation"])
     np.testing.assert_array_equal(first["achieved_goal"], second["achieved_goal"])
@@ -71,7 +71,7 @@ def test_the_last_observation_of_an_episode_is_aside(goal_id, make_vec):
     env = make_vec(goal_id, 2, autoreset_mode=AutoresetMode.SAME_STEP)
     env.reset(seed=0)
     for _ in range(10):
-        now, _, _, truncated, info = env.step(np.zeros((2, 42)))
+        now, _, _, truncated, info = env.step(still(env))
     assert truncated.all()
     for i, last in enumerate(info["final_obs"]):
         assert env.single_observation_space.contains(last)

@@ -6,7 +6,7 @@ from gymnasium.vector import AutoresetMode
 
 from elastica_gym.envs.handling import FEWEST, KEPT, WRAPPED, Handling
 
-from .conftest import random_actions
+from .conftest import random_actions, still
 
 RETURN, GRAB, MOVE, FETCH = (f"elastica_gym/Octopus{name}-v1" for name in ("Return", "Grab", "Move", "Fetch"))
 
@@ -28,7 +28,7 @@ def test_what_is_held_at_the_start_is_wrapped_and_stays_so(make_vec):
 def test_an_arm_that_lets_go_is_charged_once(make_vec):
     env = make_vec(RETURN, 2, duration=2.0, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
-    rewards = np.array([env.step(np.zeros((2, 42)))[1] for _ in range(20)])
+    rewards = np.array([env.step(still(env))[1] for _ in range(20)])
     assert ((rewards < -10.0).sum(axis=0) == 1).all()
     # never at once: it may hold less for 0.2 s
     assert (rewards[:4] > -1.0).all()
@@ -66,7 +66,7 @@ def test_moving_counts_only_while_touched(make_vec):
 def test_progress_is_all_numbers_and_goes_with_the_state(make_vec, task):
     env = make_vec(task, 3)
     env.reset(seed=0)
-    for action in random_actions(0, 5, 3):
+    for action in random_actions("elastica_gym/OctopusGrab-v1", 0, 5, 3):
         env.step(action)
     assert env.progress.shape == (3, len(Handling._fields)) and np.isfinite(env.progress).all()
     saved, kept = env.get_state(), env.progress.copy()

@@ -13,7 +13,7 @@ from gymnasium.wrappers import RecordVideo
 from elastica_gym.viz import Recorder, run_rollout
 from elastica_gym.viz.frames import FIELD_OF_VIEW, following
 
-from .conftest import random_actions
+from .conftest import random_actions, still
 
 SNAKE, OCTOPUS = "elastica_gym/SnakeReach-v1", "elastica_gym/OctopusFetch-v1"
 GOAL = "elastica_gym/SnakeReachGoal-v1"
@@ -36,7 +36,7 @@ def test_each_environment_has_its_picture_and_drawing_changes_nothing(drawing, e
     for env in (plain, drawn):
         env.reset(seed=3)
     first = drawn.render()
-    for action in random_actions(0, 12, 2):
+    for action in random_actions(env_id, 0, 12, 2):
         expected, got = plain.step(action), drawn.step(action)
         for mine, other in zip(got[:4], expected[:4], strict=True):
             np.testing.assert_array_equal(mine, other)
@@ -52,7 +52,9 @@ def test_each_environment_has_its_picture_and_drawing_changes_nothing(drawing, e
 @pytest.mark.parametrize("env_id", [SNAKE, OCTOPUS])
 def test_the_camera_sees_what_matters_and_does_not_jump(env_id):
     rng = np.random.default_rng(1)
-    rollout = run_rollout(env_id, lambda observations, env: rng.uniform(-1.0, 1.0, (1, 42)), seed=5, duration=1.5)
+    rollout = run_rollout(
+        env_id, lambda observations, env: rng.uniform(-1.0, 1.0, env.action_space.shape), seed=5, duration=1.5
+    )
     assert len(rollout.step) > 15
     cameras = [following(rollout, k, 1.5) for k in range(len(rollout.step))]
     for k, camera in enumerate(cameras):
@@ -133,7 +135,7 @@ def test_a_forked_one_goes_on_and_says_that_it_cannot_draw(drawing):
     child = os.fork()
     if child == 0:
         signal.alarm(60)
-        env.step(np.zeros((2, 42)))
+        env.step(still(env))
         try:
             env.render()
         except RuntimeError as error:
@@ -150,7 +152,7 @@ def test_gymnasium_collects_the_pictures_of_an_episode(offscreen, env_id):
     env = gymnasium.make(env_id, duration=0.5, **DRAWN | {"render_mode": "rgb_array_list"})
     env.reset(seed=0)
     for _ in range(3):
-        env.step(np.zeros(42))
+        env.step(still(env))
     frames = env.render()
     assert env.render_mode == "rgb_array_list" and [frame.shape for frame in frames] == [(64, 96, 3)] * 4
     assert env.render() == []
@@ -163,7 +165,7 @@ def test_a_window_shows_what_happens(offscreen, env_id, monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     env = gymnasium.make(env_id, duration=0.5, **DRAWN | {"render_mode": "human"})
     env.reset(seed=0)
-    env.step(np.zeros(42))
+    env.step(still(env))
     shown = pygame.surfarray.array3d(pygame.display.get_surface()).swapaxes(0, 1)
     np.testing.assert_array_equal(shown, env.unwrapped.render())
     assert env.render() is None and env.render_mode == "human"

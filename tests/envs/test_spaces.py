@@ -39,7 +39,7 @@ def test_batches_of_it_are_gymnasiums(space):
 def test_it_is_what_the_environment_says(env_id, make_vec):
     env = make_vec(env_id, duration=0.5)
     space = env.single_observation_space
-    assert space.names == env.observation_names and len(env.single_action_space.names) == 42
+    assert space.names == env.observation_names and len(env.single_action_space.names) == env.body.n_activations
     assert space.mirror is env.body.mirror is env.single_action_space.mirror
     assert space.duration == pytest.approx(0.5) == env.duration
     # however soon an episode is cut short, its clock goes on alike

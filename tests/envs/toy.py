@@ -44,7 +44,7 @@ def away(situation):
 
 
 def lost(situation):
-    return distance(situation) > 10.0
+    return np.hypot(situation.pose.centre[:, 0], situation.pose.centre[:, 2]) > 10.0
 
 
 def is_away(situation):
