@@ -1,6 +1,6 @@
 """Prescribed motion of single nodes, elements and bodies."""
 
-from ..jit.compiler import apart, inner
+from ..jit.compiler import apart, inline
 from .ends import material_of, set_to, vector_of
 from .math.vectors import dot, plus, vector
 
@@ -43,7 +43,7 @@ def move(pins, clamps, time, v, Q, w, body_v, body_Q, body_w):
             set_to(w, body_w, k, d, spin[d])
 
 
-@inner
+@inline
 def free_spin(axes, Q, body_Q, k, spin):
     """Return an angular velocity without its parts about some axes of the lab."""
     if axes[0] * axes[1] * axes[2] != 0.0:

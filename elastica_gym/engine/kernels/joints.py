@@ -2,7 +2,7 @@
 
 from math import sqrt
 
-from ..jit.compiler import apart, inner
+from ..jit.compiler import apart, inline
 from .ends import add_to, director_of, lab_of, material_of, vector_of
 from .math.rotations import half_angle_over_sine
 from .math.vectors import cross, dot, plus, times
@@ -33,14 +33,14 @@ def join(joints, x, v, Q, w, force, torque, body_x, body_v, body_Q, body_w, body
         add_to(torque, body_torque, two, 1.0, material_of(Q, body_Q, two, t))
 
 
-@inner
+@inline
 def flap(joints, j, d3):
     """Return the torque that keeps the tangent of element two in a plane, -kt (d3 . h)(d3 x h), in the lab."""
     h = joints.axis[j, 0], joints.axis[j, 1], joints.axis[j, 2]
     return times(-joints.hinge_stiffness[j] * dot(d3, h), cross(d3, h))
 
 
-@inner
+@inline
 def turn(rest, Q, body_Q, one, two):
     """Return the rotation that is left to the rest rotation, Q2^T vee log(Q2 Q1^T C), in the lab."""
     # the rows of C^T Q1 are the directors that element two has at rest, so R = Q2 (C^T Q1)^T
@@ -60,7 +60,7 @@ def turn(rest, Q, body_Q, one, two):
     return lab_of(Q, body_Q, two, times(size, axis))
 
 
-@inner
+@inline
 def mixed(rest, i, a, b, c):
     """Return row i of C^T Q, given the rows of Q."""
     return plus(plus(times(rest[0, i], a), rest[1, i], b), rest[2, i], c)

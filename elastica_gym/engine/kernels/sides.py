@@ -4,7 +4,7 @@ from math import sqrt
 
 import numpy as np
 
-from ..jit.compiler import ONE, apart, inner
+from ..jit.compiler import ONE, apart, inline
 from .contact.law import middle, twist
 from .math.vectors import add_column, cross, dot, plus, times, to_lab_at, vector
 
@@ -12,19 +12,19 @@ from .math.vectors import add_column, cross, dot, plus, times, to_lab_at, vector
 PARTS = 1e12
 
 
-@inner
+@inline
 def rounded(a):
     """Return a distance, rounded [m]."""
     return np.rint(PARTS * a) / PARTS
 
 
-@inner
+@inline
 def reach(k, offset, length, rest_length, radius):
     """Return how far from its axis an element is joined: its half of the offset grows with its radius [m]."""
     return radius[k] + 0.5 * offset * sqrt(rest_length[k] / length[k])
 
 
-@inner
+@inline
 def load(force, torque, Q, k, f, arm):
     """Add a force f on element k, ``arm`` from its centre: half of it to each node, and the torque to the element."""
     add_column(force, k, 0.5, f)

@@ -4,13 +4,14 @@ from math import exp
 
 import numpy as np
 
-from ..jit.compiler import FIRST, entry, inner
-from ..model import BLOCK, Control, Model, State
+from ..jit.compiler import FIRST, entry, inline
+from ..model import Control, Model, State
 from .bodies import drift_bodies, kick_bodies, orthonormalise_bodies, weigh_bodies
 from .contact.cylinders import cylinders_on_planes, rods_on_cylinders
 from .contact.plane import slide, slip, stick, to_nodes, touch
 from .contact.rods import rods_on_rods
 from .joints import join
+from .layout import end_of, matrix, rows
 from .queue import take
 from .rod.curvature import bending, logarithm, relative_rotation
 from .rod.dynamics import dynamics
@@ -23,19 +24,7 @@ from .rod.tension import bend_energy_rates, tension
 ORTHONORMALISE_EVERY = 1024
 
 
-@inner
-def rows(a):
-    """Return the three rows of a (3, L) array, which the stages take apart."""
-    return a[0], a[1], a[2]
-
-
-@inner
-def matrix(a):
-    """Return the nine rows of a (3, 3, L) array."""
-    return rows(a[0]), rows(a[1]), rows(a[2])
-
-
-@inner
+@inline
 def drift(model, state, i, n, h):
     """Move environment i by a time h at its present velocities."""
     kinematics(FIRST, n, h, rows(state.x[i]), rows(state.v[i]), matrix(state.Q[i]), rows(state.w[i]))
@@ -43,7 +32,7 @@ def drift(model, state, i, n, h):
         drift_bodies(h, state.body_x[i], state.body_v[i], state.body_Q[i], state.body_w[i])
 
 
-@inner
+@inline
 def drift_twice(model, state, i, n, h):
     """Move environment i by a time h, twice."""
     kinematics_twice(FIRST, n, h, rows(state.x[i]), rows(state.v[i]), matrix(state.Q[i]), rows(state.w[i]))
@@ -52,7 +41,7 @@ def drift_twice(model, state, i, n, h):
             drift_bodies(h, state.body_x[i], state.body_v[i], state.body_Q[i], state.body_w[i])
 
 
-@inner
+@inline
 def internal(model, state, control, i, first, n, dt):
     """Compute the forces and torques of strains, gravity and damping, of the rods from slot ``first`` to n - 1."""
     m, s, c = model, state, control
@@ -79,7 +68,7 @@ def internal(model, state, control, i, first, n, dt):
             (m.viscosity[0], m.viscosity[1]), force, torque)  # fmt: skip
 
 
-@inner
+@inline
 def applied(model, state, control, i, n, time):
     """Add the loads on environment i that do not depend on other loads."""
     m, s, c = model, state, control
@@ -96,7 +85,7 @@ def applied(model, state, control, i, n, time):
              s.body_Q[i], s.body_w[i], s.body_force[i], s.body_torque[i])  # fmt: skip
 
 
-@inner
+@inline
 def contacts(model, state, i, n):
     """Add the loads of contact between rods and bodies in environment i, and the weight of bodies."""
     m, s = model, state
@@ -116,7 +105,7 @@ def contacts(model, state, i, n):
         )  # fmt: skip
 
 
-@inner
+@inline
 def settle(model, state, planes, j, i, first, n):
     """Add the response and friction of plane j to the rods from slot ``first`` to n - 1 of environment i."""
     m, s, p, normal = model, state, planes, planes.normal[j]
@@ -142,7 +131,7 @@ def settle(model, state, planes, j, i, first, n):
         to_nodes(first, n, push, force)
 
 
-@inner
+@inline
 def ground(model, state, i, n, dt):
     """Add the response and friction of the planes to environment i, which answer to all other loads."""
     m, s, p = model, state, model.planes
@@ -154,7 +143,7 @@ def ground(model, state, i, n, dt):
                             s.body_force[i], s.body_torque[i])  # fmt: skip
 
 
-@inner
+@inline
 def kick(model, state, i, n, dt):
     """Change the velocities of environment i by its net loads over a time dt, and damp them."""
     m, s = model, state
@@ -173,7 +162,7 @@ def advance_queue(model, state, control, order, queue, dt, n_substeps, mine):
     many this thread has advanced, and writes which into ``mine``.
     """
     n_mine = 0
-    n = np.uint64(-(-(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK)
+    n = end_of(model)
     place: int = take(queue)  # type: ignore[call-arg] # the context is Numba's to give
     while place < order.size:
         i = order[place]

@@ -1,6 +1,6 @@
 """Whether all motion is finite."""
 
-from ..jit.compiler import apart, inner, stage
+from ..jit.compiler import apart, inline, stage
 
 
 @stage
@@ -14,7 +14,7 @@ def count_broken(first, n, v, w):
     return count
 
 
-@inner
+@inline
 def is_broken(v, w):
     """Return whether any part of a velocity or an angular velocity is infinite or NaN."""
     total = v[0] + v[1] + v[2] + w[0] + w[1] + w[2]

@@ -6,7 +6,7 @@ its ends are domes to them. Planes meet it as it is, at the rims of its flat end
 
 from math import sqrt
 
-from ...jit.compiler import ONE, apart, inner, stage
+from ...jit.compiler import ONE, apart, inline, stage
 from ..math.roots import inverse_sqrt
 from ..math.vectors import add, column, cross, dot, norm, plus, times, to_lab, to_material, vector
 from .law import axis_velocity, friction_force, load, normal_force, overlap, spin_velocity, twist
@@ -73,7 +73,7 @@ def rods_on_cylinders(first, last, gap, x, v, Q, w, length, radius, cylinders, b
                     touch[k] += N
 
 
-@inner
+@inline
 def rim(Q, length, radius, n, number):
     """Return one of six points, from the centre: on each end's rim the lowest one and those 120 degrees from it.
 
@@ -135,20 +135,20 @@ def cylinders_on_planes(dt, cylinders, planes, x, v, directors, w, contact, forc
                     add(torque[b], 1.0, to_material(Q, cross(vector(point[4:]), friction)))
 
 
-@inner
+@inline
 def within(most, a):
     """Return a, shortened to the length ``most`` if it is longer."""
     size = norm(a)
     return times(most / size, a) if size > most else a
 
 
-@inner
+@inline
 def turned(axis, J, a):
     """Return the angular acceleration that a torque a causes, both in the lab."""
     return plus(times(1.0 / J[0], a), (1.0 / J[2] - 1.0 / J[0]) * dot(axis, a), axis)
 
 
-@inner
+@inline
 def rub(dt, contact, mu, n, axis, mass, J, ahead, spin):
     """Find the friction at the points of contact: what ends their slip with this step, as far as mu N allows.
 

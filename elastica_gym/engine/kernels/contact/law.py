@@ -13,7 +13,7 @@ element apart by N r/(2 l), which no step for arms stands where l < r.)
 
 from math import sqrt
 
-from ...jit.compiler import ONE, inner
+from ...jit.compiler import ONE, inline
 from ..math.roots import TINY
 from ..math.vectors import add_column, column, cross, dot, norm, plus, times, to_lab_at, to_material_at
 
@@ -21,14 +21,14 @@ from ..math.vectors import add_column, column, cross, dot, norm, plus, times, to
 CENTRING = 0.03
 
 
-@inner
+@inline
 def clip(t):
     """Return the point of [0, 1] nearest to t."""
     t = t if t > 0.0 else 0.0
     return t if t < 1.0 else 1.0
 
 
-@inner
+@inline
 def closest(a, e, c1, b, f, c2):
     """Return where |b + t f - a - s e|^2 + c1 (s - 1/2)^2 + c2 (t - 1/2)^2 is least, s and t in [0, 1], and the least.
 
@@ -45,7 +45,7 @@ def closest(a, e, c1, b, f, c2):
     return s, t, towards, dot(towards, towards) + c1 * (s - 0.5) * (s - 0.5) + c2 * (t - 0.5) * (t - 0.5)
 
 
-@inner
+@inline
 def overlap(a, e, r1, b, f, r2, is_rod):
     """Return how deep segments of radii r1 and r2 overlap, n, and s and t of their closest points a + s e and b + t f.
 
@@ -57,14 +57,14 @@ def overlap(a, e, r1, b, f, r2, is_rod):
     return r1 + r2 - d, times(1.0 / d if squared > TINY else 0.0, towards), s, t
 
 
-@inner
+@inline
 def normal_force(g, approach, stiffness, damping):
     """Return N: k g + nu times the velocity of approach, never adhesive."""
     N = stiffness * g + damping * approach
     return N if N > 0.0 else 0.0
 
 
-@inner
+@inline
 def friction_force(n, u, N, friction, slip_damping):
     """Return the friction on the second, min(c |u_t|, mu N) along u_t, of surfaces whose velocities differ by u."""
     # n is shorter than one by as much as the points are drawn from where they are closest
@@ -76,32 +76,32 @@ def friction_force(n, u, N, friction, slip_damping):
     return times(drag / speed if speed > 0.0 else 0.0, slip)
 
 
-@inner
+@inline
 def middle(x, k):
     """Return the centre of element k."""
     return times(0.5, plus(column(x, k), 1.0, column(x, k + ONE)))
 
 
-@inner
+@inline
 def axis_velocity(v, k, s):
     """Return the velocity of the point (1 - s) x_k + s x_k+1 of element k."""
     return plus(times(1.0 - s, column(v, k)), s, column(v, k + ONE))
 
 
-@inner
+@inline
 def spin_velocity(Q, w, k, arm):
     """Return the velocity that the spin of element k adds at ``arm`` from its axis."""
     return cross(to_lab_at(Q, k, column(w, k)), arm)
 
 
-@inner
+@inline
 def load(force, k, s, f):
     """Add a force f at the point s of element k to its nodes."""
     add_column(force, k, 1.0 - s, f)
     add_column(force, k + ONE, s, f)
 
 
-@inner
+@inline
 def twist(torque, Q, k, a):
     """Add a torque a, in the lab, to element k."""
     add_column(torque, k, 1.0, to_material_at(Q, k, a))

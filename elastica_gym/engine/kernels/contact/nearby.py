@@ -9,18 +9,18 @@ from math import floor
 
 import numpy as np
 
-from ...jit.compiler import apart, inner
+from ...jit.compiler import apart, inline
 from ..math.vectors import dot, plus
 from .law import middle
 
 
-@inner
+@inline
 def bucket_of(i, j, k, n_buckets):
     """Return the bucket of a cell; their number is a power of two."""
     return ((i * 73856093) ^ (j * 19349663) ^ (k * 83492791)) & (n_buckets - 1)
 
 
-@inner
+@inline
 def cell_of(centre, width, number):
     """Return the cell of a place. What is not a number is nowhere near the others, wherever it is put."""
     c0, c1, c2 = centre
@@ -50,7 +50,7 @@ def fill(elements, x, width, cell, bucket, member):
         member[bucket[b]] = a
 
 
-@inner
+@inline
 def gather(a, elements, x, reach, margin, cell, bucket, member, near):
     """Put into ``near`` the elements after ``a`` whose balls, larger by a margin, overlap its, and return how many.
 

@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 
-from ...jit.compiler import apart, inner
+from ...jit.compiler import apart, inline
 from ...model import NEAR, Cylinders, Planes
 from ...scene import Law
 from .cylinders import cylinders_on_planes, rods_on_cylinders
@@ -12,7 +12,7 @@ from .nearby import fill, gather
 from .rods import meet, strayed
 
 
-@inner
+@inline
 def width_of_cells(elements, reach, margin):
     """Return how wide cells must be for neighbours of an element to be in those around its own."""
     widest = 0.0
@@ -22,7 +22,7 @@ def width_of_cells(elements, reach, margin):
     return 2.0 * (widest + margin)
 
 
-@inner
+@inline
 def first_row(contacts, one, two):
     """Return the first row of a pair of rods, ``one`` not after ``two``, and the end of the rows of ``one``."""
     low, end = contacts.row[one], contacts.row[one + 1]
@@ -36,7 +36,7 @@ def first_row(contacts, one, two):
     return low, end
 
 
-@inner
+@inline
 def list_pairs(contacts, x, length, radius, reach, margin):
     """List the elements that may touch, by slot, with the row of their rods. Returns how many there are.
 
@@ -59,13 +59,13 @@ def list_pairs(contacts, x, length, radius, reach, margin):
     return n_pairs
 
 
-@inner
+@inline
 def is_close(low, high, radius, length):
     """Return whether two elements of a rod are too near along it to touch."""
     return high - low - 1 < NEAR * pi * radius / length
 
 
-@inner
+@inline
 def press_pair(contacts, p, low, high, x, v, Q, w, length, radius, force, torque, touch):
     """Add the forces between two elements by the law of row p, unless they are neighbours."""
     c = contacts

@@ -11,13 +11,13 @@ from math import pi
 
 import numpy as np
 
-from ...jit.compiler import FIRST, ONE, apart, inner, stage
+from ...jit.compiler import FIRST, ONE, apart, inline, stage
 from ...model import NEAR
 from ..math.vectors import column, cross, dot, plus, times
 from .law import axis_velocity, friction_force, load, middle, normal_force, overlap, spin_velocity, twist
 
 
-@inner
+@inline
 def widest(x, order):
     """Return the axis, 0 to 2, along which the elements spread furthest."""
     best, axis = -1.0, 0
@@ -65,7 +65,7 @@ def extents(n, along, reach, margin, begin, end):
         begin[k], end[k] = centre - (reach[k] + margin), centre + (reach[k] + margin)
 
 
-@inner
+@inline
 def sort(order, key):
     """Sort the slots in ``order`` by their ``key``, then by number."""
     for a in range(1, order.size):
@@ -77,7 +77,7 @@ def sort(order, key):
         order[b + 1] = k
 
 
-@inner
+@inline
 def sort_pairs(pairs, n_pairs):
     """Sort the first pairs, by insertion over shrinking gaps (Shell 1959)."""
     gap = n_pairs // 2
@@ -92,7 +92,7 @@ def sort_pairs(pairs, n_pairs):
         gap //= 2
 
 
-@inner
+@inline
 def list_pairs(contact, order, begin, end, x, reach, margin, pairs):
     """List the pairs of elements whose balls, larger by a margin, overlap and that are not neighbours.
 
@@ -155,7 +155,7 @@ def rods_on_rods(
     return n_pairs
 
 
-@inner
+@inline
 def meet(contact, j, k, x, v, Q, w, length, radius, force, torque, touch):
     """Add the forces between elements j and k, if they overlap."""
     at_j, at_k = middle(x, j), middle(x, k)

@@ -5,52 +5,52 @@ Vectors are tuples of three numbers; Q holds directors as rows, so that Q a is a
 
 from math import sqrt
 
-from ...jit.compiler import inner
+from ...jit.compiler import inline
 
 
-@inner
+@inline
 def vector(row):
     """Return the three numbers of an array as a tuple."""
     return row[0], row[1], row[2]
 
 
-@inner
+@inline
 def column(rows, k):
     """Return the vector in slot k of a (3, L) array."""
     return rows[0, k], rows[1, k], rows[2, k]
 
 
-@inner
+@inline
 def dot(a, b):
     """Return a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@inner
+@inline
 def norm(a):
     """Return the length of a."""
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
-@inner
+@inline
 def cross(a, b):
     """Return a x b."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@inner
+@inline
 def times(s, a):
     """Return s a."""
     return s * a[0], s * a[1], s * a[2]
 
 
-@inner
+@inline
 def plus(a, s, b):
     """Return a + s b."""
     return a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]
 
 
-@inner
+@inline
 def to_material(Q, a):
     """Return Q a for directors Q, (3, 3)."""
     return (
@@ -60,7 +60,7 @@ def to_material(Q, a):
     )
 
 
-@inner
+@inline
 def to_lab(Q, a):
     """Return Q^T a for directors Q, (3, 3)."""
     return (
@@ -70,7 +70,7 @@ def to_lab(Q, a):
     )
 
 
-@inner
+@inline
 def to_material_at(Q, k, a):
     """Return Q a for the directors in slot k of a (3, 3, L) array."""
     return (
@@ -80,7 +80,7 @@ def to_material_at(Q, k, a):
     )
 
 
-@inner
+@inline
 def to_lab_at(Q, k, a):
     """Return Q^T a for the directors in slot k of a (3, 3, L) array."""
     return (
@@ -90,7 +90,7 @@ def to_lab_at(Q, k, a):
     )
 
 
-@inner
+@inline
 def add(row, s, a):
     """Add s a to an array of three numbers."""
     row[0] += s * a[0]
@@ -98,7 +98,7 @@ def add(row, s, a):
     row[2] += s * a[2]
 
 
-@inner
+@inline
 def add_column(rows, k, s, a):
     """Add s a to slot k of a (3, L) array."""
     rows[0, k] += s * a[0]

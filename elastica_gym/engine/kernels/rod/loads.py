@@ -2,7 +2,7 @@
 
 from math import cos, sin
 
-from ...jit.compiler import ONE, inner, stage
+from ...jit.compiler import ONE, inline, stage
 
 
 @stage
@@ -58,7 +58,7 @@ def clear(first, n, force, torque):
         torque[0][k] = torque[1][k] = torque[2][k] = 0.0
 
 
-@inner
+@inline
 def clear_at(slots, force, torque):
     """Set loads in some slots to zero."""
     for j in range(slots.size):
@@ -66,7 +66,7 @@ def clear_at(slots, force, torque):
             force[d, slots[j]] = torque[d, slots[j]] = 0.0
 
 
-@inner
+@inline
 def external_at(slots, applied_force, applied_torque, force, torque):
     """Add the loads that Control holds in some slots."""
     for j in range(slots.size):

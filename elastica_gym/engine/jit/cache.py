@@ -1,0 +1,125 @@
+"""Where the machine code of entries is kept: in a folder keyed by everything that decides what it is.
+
+That is this package's version, the text of all physics, Numba's version and the CPU; in it, code is stamped with the
+text of its entry's own file. Numba's own cache looks at that file alone, and would load an entry stale after a change
+to a stage in another one.
+"""
+
+import functools
+import hashlib
+import importlib.metadata
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding
+import numba
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+
+CACHE_VARIABLE = "ELASTICA_GYM_CACHE_DIR"
+ENGINE = Path(__file__).parents[1]
+# all that compiled code depends on
+SOURCES = ("jit/*.py", "kernels/**/*.py", "model.py", "scene.py")
+
+
+@functools.cache
+def cache_folder() -> Path:
+    """Return the folder of compiled kernels for this version, source, Numba and CPU.
+
+    It lies under the folder that the environment variable ``ELASTICA_GYM_CACHE_DIR`` names, or else
+    under the user's cache folder, or, where that cannot be written, in the temporary folder.
+    """
+    key = hashlib.sha256()
+    for part in (_package_version(), numba.__version__, llvmlite.__version__, sys.version, _cpu()):
+        key.update(part.encode() + b"\0")
+    for source in sorted(path for pattern in SOURCES for path in ENGINE.glob(pattern)):
+        key.update(source.read_bytes())
+    name = key.hexdigest()[:20]
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    asked = os.environ.get(CACHE_VARIABLE)
+    for root in [Path(asked)] if asked else [home / "elastica_gym", Path(tempfile.gettempdir()) / "elastica_gym"]:
+        folder = root / name
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
+        except OSError as error:
+            reason = error
+        else:
+            return folder
+    raise OSError(f"cannot write compiled kernels to {folder}: {reason}; set {CACHE_VARIABLE} to a writable folder")
+
+
+def _package_version() -> str:
+    try:
+        return importlib.metadata.version("elastica-gym")
+    except importlib.metadata.PackageNotFoundError:  # used from a source tree that is not installed
+        return "source"
+
+
+def _cpu() -> str:
+    features = llvmlite.binding.get_host_cpu_features().flatten()
+    # these two are Numba's own and decide what code it emits
+    chosen = (os.environ.get("NUMBA_CPU_NAME", ""), os.environ.get("NUMBA_CPU_FEATURES", ""))
+    return "\0".join((llvmlite.binding.get_host_cpu_name(), features, *chosen))
+
+
+class _EntryLocator:
+    """Tell Numba's cache where an entry is kept, and whether it is fresh by the text of its own file."""
+
+    def __init__(self, py_func: Callable, py_file: str) -> None:
+        self._name = py_func.__qualname__
+        self._file = Path(py_file)
+
+    @classmethod
+    def from_function(cls, py_func: Callable, py_file: str) -> "_EntryLocator":
+        return cls(py_func, py_file)
+
+    def ensure_cache_path(self) -> None:
+        cache_folder()
+
+    def get_cache_path(self) -> str:
+        return str(cache_folder())
+
+    def get_source_stamp(self) -> str:
+        return hashlib.sha256(self._file.read_bytes()).hexdigest()
+
+    def get_disambiguator(self) -> str:
+        return self._name
+
+
+class _CacheImpl(CompileResultCacheImpl):
+    _locator_classes = [_EntryLocator]  # noqa: RUF012
+
+
+class EntryCache(FunctionCache):
+    """Numba's function cache in our folder, with a word to whoever waits for the compiler."""
+
+    _impl_class = _CacheImpl
+    _started = 0.0
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return kept code, or announce that it is compiled."""
+        found = super().load_overload(sig, target_context)
+        if found is None:
+            self._started = time.perf_counter()
+            print(
+                f"elastica_gym: compiling {self._py_func.__name__} for this machine, once",
+                end=" ... ",
+                file=sys.stderr,
+                flush=True,
+            )
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep compiled code, and say where."""
+        took = f"{time.perf_counter() - self._started:.0f} s"
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            print(f"{took}, not kept in {self.cache_path}: {error}", file=sys.stderr, flush=True)
+        else:
+            print(f"{took}, kept in {self.cache_path}", file=sys.stderr, flush=True)
