@@ -25,8 +25,8 @@ def main() -> None:
 
     arguments = tyro.cli(PlotArguments)
     choose_environment(arguments.env)
+    from elastica_gym.files import write_atomically
     from elastica_gym.rl import curves
-    from elastica_gym.rl.checkpoints import write_atomically
     from elastica_gym.rl.policies import read_config
     from elastica_gym.rl.run_files import EVALUATIONS, METRICS
 

@@ -80,7 +80,7 @@ def main() -> None:
         # torch takes seconds to import: not before the arguments are known to be good
         import yaml
 
-        from elastica_gym.rl.checkpoints import write_atomically
+        from elastica_gym.files import write_atomically
         from elastica_gym.rl.training import Training
 
         training = Training(folder, config, resume=arguments.resume is not None)

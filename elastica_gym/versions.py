@@ -25,16 +25,30 @@ def require_versions() -> None:
     require_within(ranges, {name: version(name) for name in ranges})
 
 
+def lowest_of(extra: str) -> dict[str, str]:
+    """Return the lowest allowed version of each package of an optional group, such as ``train``.
+
+    None where this package runs from its folder without having been installed: nothing says what it needs.
+    """
+    try:
+        lines = requires("elastica-gym") or []
+    except PackageNotFoundError:
+        return {}
+    matches = (re.fullmatch(rf"([\w.-]+)\s*([^;]*);\s*extra == ['\"]{extra}['\"]", line) for line in lines)
+    found = {match[1]: re.search(r">=\s*([\d.]+)", match[2]) for match in matches if match}
+    return {name: lowest[1] if lowest else "0" for name, lowest in found.items()}
+
+
 def require_within(ranges: Mapping[str, str], installed: Mapping[str, str]) -> None:
     """Raise ImportError or warn of installed versions outside of ranges such as ``>=2.0,<3``."""
     for name, range_ in ranges.items():
-        found = _parts(installed[name])
+        found = parts(installed[name])
         lowest, bound = (re.search(sign + r"\s*([\d.]+)", range_) for sign in (">=", "<"))
         allowed = f"{name}{range_}"
         message = f"elastica_gym works with {allowed}, not {installed[name]}; mend it by: pip install '{allowed}'"
-        if lowest and found < _parts(lowest[1]):
+        if lowest and found < parts(lowest[1]):
             raise ImportError(message)
-        if bound and found >= _parts(bound[1]):
+        if bound and found >= parts(bound[1]):
             warnings.warn(f"{message} (or go on untried)", RuntimeWarning, stacklevel=4)
 
 
@@ -44,7 +58,7 @@ def _ranges(requirements: list[str]) -> dict[str, str]:
     return {match[1]: match[2].strip() for match in split if match and match[1] in CHECKED}
 
 
-def _parts(text: str) -> Version:
+def parts(text: str) -> Version:
     """Return 2.4.0rc1 as (2, 4, 0), without zeros at the end: those of 2.0 and 2.0.0 are the same."""
     numbers = [int(part) for part in re.match(r"[\d.]*", text)[0].strip(".").split(".") if part]  # type: ignore[index]
     while numbers and numbers[-1] == 0:

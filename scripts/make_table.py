@@ -21,8 +21,8 @@ from scipy.stats import trim_mean
 
 from elastica_gym.console.bad_input import BadInputError, check_bounds, choose, make_folder, require_extra, run_command
 from elastica_gym.envs import IDS
+from elastica_gym.files import write_atomically
 from elastica_gym.rl import machine
-from elastica_gym.rl.checkpoints import write_atomically
 from elastica_gym.rl.run_files import GAIT
 from elastica_gym.rl.seeds import TEST
 

@@ -15,7 +15,7 @@ from gymnasium.vector import AutoresetMode
 
 import elastica_gym  # noqa: F401  registers the environments
 from elastica_gym.console.bad_input import BadInputError, check_bounds, make_folder, require_extra, run_command
-from elastica_gym.scripted.octopus_fetch import HOME, HOMEWARD, Gait, carry, fetch, see
+from elastica_gym.scripted.octopus_fetch import HOMEWARD, Gait, carry, fetch, see
 
 FETCH = "elastica_gym/OctopusFetch-v1"
 LONGEST = 5.5
@@ -120,7 +120,7 @@ def worth(batch: Any, gaits: list[Gait], begin: list[Any]) -> tuple[np.ndarray, 
     batch.elapsed[:] = np.minimum(batch.elapsed, batch.max_episode_steps - last)
     for step in range(last):
         observations, _, terminated, _, info = batch.step(actions_of(batch, gaits))
-        away = np.linalg.norm(observations[:, HOME].astype(np.float64), axis=1)
+        away = np.linalg.norm(observations[:, batch.layout["home"]].astype(np.float64), axis=1)
         done = goes_on & info["is_success"]
         failed = goes_on & ~done & (terminated | (batch.situation().progress.grabbed == 0.0))
         values = np.where(goes_on, 0.1 - away, values)

@@ -5,20 +5,12 @@ import importlib
 import importlib.metadata
 import math
 import os
-import re
 import sys
 from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
-EXTRAS = {
-    "train": {
-        **{"stable-baselines3": "2.9", "torch": "2.3", "tyro": "0.9", "rich": "13"},
-        **{"tqdm": "4.66", "matplotlib": "3.8", "pyyaml": "6", "cma": "4"},
-    },
-    "viz": {"rerun-sdk": "0.41", "mujoco": "4", "imageio-ffmpeg": "0.6", "pillow": "11"},
-}
-"""Packages that each optional dependency group for users brings, with their lowest versions, as in pyproject.toml."""
+from ..versions import lowest_of, parts
 
 
 class BadInputError(Exception):
@@ -52,19 +44,15 @@ def check_bounds(values: Mapping[str, Any], lowest: Mapping[str, float]) -> None
 def missing_extra(extra: str) -> str | None:
     """Return what is missing of the group `extra` and which command installs it, or None if it is complete."""
     troubles = []
-    for package, lowest in EXTRAS[extra].items():
+    for package, lowest in lowest_of(extra).items():
         try:
             installed = importlib.metadata.version(package)
         except importlib.metadata.PackageNotFoundError:
             troubles.append(f"{package} is not installed")
             continue
-        if _numbers(installed) < _numbers(lowest):
+        if parts(installed) < parts(lowest):
             troubles.append(f"{package} {installed} is older than {lowest}")
     return f"{', '.join(troubles)}: pip install --upgrade 'elastica-gym[{extra}]'" if troubles else None
-
-
-def _numbers(version: str) -> list[int]:
-    return [int(part) for part in re.match(r"[\d.]*\d", version)[0].split(".")]  # type: ignore[index]
 
 
 def require_extra(extra: str) -> None:
@@ -83,7 +71,7 @@ def choose_environment(env_id: str, *, goals: bool = False) -> str:
     goals
         Whether it may be one whose observation is a dict with the goal.
     """
-    from elastica_gym.envs import GoalTask, registered_ids, task_of
+    from ..envs import GoalTask, registered_ids, task_of
 
     module, _, name = env_id.rpartition(":")
     if module:
@@ -102,7 +90,7 @@ def choose_environment(env_id: str, *, goals: bool = False) -> str:
 
 def environment_ids() -> list[str]:
     """Return the ids that agents are trained on here: those whose observation is one vector."""
-    from elastica_gym.envs import GoalTask, registered_ids, task_of
+    from ..envs import GoalTask, registered_ids, task_of
 
     return [env_id for env_id in registered_ids() if not isinstance(task_of(env_id), GoalTask)]
 

@@ -11,6 +11,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..files import write_atomically
+
 
 class CallBackBaseClass:
     """Base class of callbacks; write your own by overriding `make_callback`.
@@ -150,13 +152,15 @@ class ExportCallBack(CallBackBaseClass):
     def _dump(self) -> None:
         path = Path(self._path(self.file_count))
         data = {name: np.array(values) for name, values in self.buffer.items()}
-        unfinished = path.with_name(path.name + ".part")
-        with unfinished.open("wb") as file:
-            if self.method == "npz":
-                np.savez(file, **data)  # type: ignore[arg-type]
-            else:
-                pickle.dump(data, file)
-        unfinished.replace(path)
+
+        def write(part: Path) -> None:
+            with part.open("wb") as file:
+                if self.method == "npz":
+                    np.savez(file, **data)  # type: ignore[arg-type]
+                else:
+                    pickle.dump(data, file)
+
+        write_atomically(path, write)
         self.file_count += 1
         self.buffer_size = 0
         self.buffer.clear()

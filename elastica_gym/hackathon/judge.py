@@ -108,7 +108,7 @@ def print_score(result: dict[str, Any]) -> None:
 
 
 def _check(env_id: str, targets: int, target_seed: int, n_threads: int, record: Path | None) -> None:
-    from elastica_gym.envs import task_of
+    from ..envs import task_of
 
     choose_environment(env_id)
     if not set(KINDS) <= set(task_of(env_id).starts):
@@ -137,14 +137,14 @@ class _Watch:
     ) -> None:
         self._bar.__exit__(kind, error, trace)
         if self._recorder is not None and self._path is not None:
-            from elastica_gym.viz import write_recording
+            from ..viz import write_recording
 
             print(f"recorded {write_recording(self._recorder.rollout(), self._path)}")
 
     def __call__(self, batch: Any, sampler: Sampler, infos: dict[str, Any] | None) -> None:
         if infos is None:
             if self._path is not None:
-                from elastica_gym.viz import Recorder
+                from ..viz import Recorder
 
                 self._recorder = Recorder(batch).capture()
             return

@@ -10,12 +10,12 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 import elastica_gym  # noqa: F401  registers the environments
-from elastica_gym.bodies import grip
-from elastica_gym.bodies.body import activate
-from elastica_gym.engine import State
-from elastica_gym.engine.model import make_control, make_state
-from elastica_gym.engine.threads import Team
 
+from ..bodies import grip
+from ..bodies.body import activate
+from ..engine import State
+from ..engine.model import make_control, make_state
+from ..engine.threads import Team
 from .scoring import Samples, goals_held
 
 SAMPLE_TIME = 0.01

@@ -12,7 +12,7 @@ import numpy as np
 import yaml
 
 from ..console.bad_input import BadInputError, choose
-from .checkpoints import write_atomically
+from ..files import write_atomically
 from .hyperparameters import load
 from .policies import Statistics, TrainedPolicy, load_model
 

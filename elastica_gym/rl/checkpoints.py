@@ -11,6 +11,8 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+from ..files import force_to_disk
+
 CHECKSUMS = "checksums.json"
 KEPT = 2
 """How many checkpoints are kept: one more than needed, for the day that the disk damages the last."""
@@ -43,11 +45,11 @@ def write_checkpoint(checkpoints: Path, steps: int, write_files: Callable[[Path]
         sums = {path.name: _checksum(path) for path in sorted(temporary.iterdir())}
         (temporary / CHECKSUMS).write_text(json.dumps(sums, indent=2))
         for path in [*temporary.iterdir(), temporary]:
-            _force_to_disk(path)
+            force_to_disk(path)
         if final.exists():
             shutil.rmtree(final)
         temporary.rename(final)
-        _force_to_disk(checkpoints)
+        force_to_disk(checkpoints)
     except BaseException:
         shutil.rmtree(temporary, ignore_errors=True)
         raise
@@ -85,26 +87,6 @@ def find_damage(folder: Path) -> str | None:
     return None
 
 
-def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` write a file under another name in the same folder and move it to `path` when it is on disk."""
-    temporary = path.with_name(f".writing-{path.name}")
-    try:
-        write(temporary)
-        _force_to_disk(temporary)
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-
-
 def _checksum(path: Path) -> str:
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _force_to_disk(path: Path) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

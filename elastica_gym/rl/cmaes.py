@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from ..console.bad_input import BadInputError
 from ..console.progress import ProgressDisplay
+from ..files import write_atomically
 from ..scripted.families import GAITS, Gait, GaitPolicy, check_fits, describe, gait_for
 from . import curves
-from .checkpoints import write_atomically
 from .evaluation import Evaluation, run_episodes
 from .run_files import GAIT, SEARCH, Table, read_table
 from .seeds import training_seeds

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..console.bad_input import BadInputError, choose, make_folder, missing_extra, require_extra
-from ..console.progress import Bar
 
 if TYPE_CHECKING:
     from .policies import Policy
@@ -33,7 +32,7 @@ def check_film(path: Path, size: tuple[int, int]) -> None:
         raise BadInputError(f"size must be two even numbers up to {LARGEST_SIDE}, got {size[0]} {size[1]}")
     require_extra("viz")
     make_folder(path.parent)
-    from elastica_gym.viz import Stage
+    from ..viz import Stage
 
     try:
         Stage(width=size[0], height=size[1]).close()
@@ -70,7 +69,8 @@ def film(
     env_kwargs
         Arguments of the environment.
     """
-    from elastica_gym.viz import render_frames, write_video
+    from ..console.progress import Bar
+    from ..viz import render_frames, write_video
 
     check_film(path, size)
     policy.reset([seed])
@@ -89,7 +89,8 @@ def film(
 
 def run_shown(policy: "Policy", env_id: str, *, seed: int, env_kwargs: dict[str, Any]) -> Any:
     """Run one episode of a policy that has begun it, show how far it is, and return the rollout."""
-    from elastica_gym.viz import run_rollout
+    from ..console.progress import Bar
+    from ..viz import run_rollout
 
     with Bar(f"running the episode of seed {seed}") as bar:
 
@@ -116,7 +117,7 @@ def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs
     if message := missing_extra("viz"):
         print(f"no recording: {message}")
         return None
-    from elastica_gym.viz import write_recording
+    from ..viz import write_recording
 
     path = folder / f"{env_id.rpartition('/')[2]}-seed{seed}.rrd"
     policy.reset([seed])

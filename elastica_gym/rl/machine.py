@@ -26,7 +26,7 @@ def describe() -> dict[str, Any]:
         ``cpu``, its model and the one that the physics is compiled for; ``kernels``, a digest that is equal where the
         compiled physics is; ``commit`` of this repository, or None outside of one; and ``versions``.
     """
-    from elastica_gym.engine.jit.cache import cache_folder
+    from ..engine.jit.cache import cache_folder
 
     return {"cpu": cpu(), "kernels": cache_folder().name, "commit": commit(), "versions": versions()}
 

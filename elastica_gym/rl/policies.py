@@ -9,8 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 import yaml
 
-from elastica_gym.bodies.muscles import N_FUNCTIONS
-
+from ..bodies.muscles import N_FUNCTIONS
 from ..console.bad_input import BadInputError, choose
 from ..scripted import scripted_policy
 from ..scripted.gaits import seed_gait

@@ -8,7 +8,7 @@ from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import Tensor, nn
 
-from elastica_gym.envs.spaces import NamedBox
+from ..envs.spaces import NamedBox
 
 
 def named(policy: Any, space: spaces.Space) -> NamedBox:

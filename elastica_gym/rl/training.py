@@ -23,8 +23,9 @@ from stable_baselines3.common.vec_env import VecNormalize
 
 from ..console.bad_input import BadInputError
 from ..console.progress import ProgressDisplay
+from ..files import write_atomically
 from . import cards, curves, transfer
-from .checkpoints import checkpoint_folders, last_whole_checkpoint, write_atomically, write_checkpoint
+from .checkpoints import checkpoint_folders, last_whole_checkpoint, write_checkpoint
 from .episodes import Episodes
 from .evaluation import evaluate
 from .films import record

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 import yaml
 
-from elastica_gym.bodies.body import Body
-from elastica_gym.engine import Wave
-
+from ..bodies.body import Body
 from ..console.bad_input import BadInputError, choose
+from ..engine import Wave
 from .gaits import (
     OCTOPUS_FUNCTIONS,
     SEED_COEFFICIENTS,

@@ -21,9 +21,7 @@ A recording holds, on the timelines ``step`` and ``sim_time``:
 It is written a column at a time, and opens with the layout that `_blueprint` describes.
 """
 
-import contextlib
 import importlib
-import os
 import warnings
 from pathlib import Path
 from types import ModuleType
@@ -32,6 +30,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..engine.model import Array
+from ..files import write_atomically
 from .rollout import HOME_RADIUS, Policy, Rollout, run_rollout
 
 if TYPE_CHECKING:
@@ -166,18 +165,11 @@ def import_rerun() -> ModuleType:
 
 
 def write_whole(path: Path, data: bytes) -> Path:
-    """Write the file under another name first, so that an error leaves nothing half done."""
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    """Write a recording atomically, so that an error leaves nothing half done."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with part.open("wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        part.replace(path)
+        write_atomically(path, lambda part: part.write_bytes(data))
     except OSError as error:
-        with contextlib.suppress(OSError):
-            part.unlink()
         raise OSError(
             error.errno, f"cannot write the recording of {len(data)} bytes: {error.strerror}", str(path)
         ) from error

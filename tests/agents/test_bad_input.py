@@ -10,6 +10,7 @@ import pytest
 from elastica_gym.console import bad_input as checks
 from elastica_gym.rl import policies
 from elastica_gym.rl.checkpoints import checkpoint_folders, find_damage
+from elastica_gym.versions import lowest_of
 from tests.agents.commands import FORWARD, ROOT, SMALL_PPO, environment, run
 
 
@@ -201,7 +202,7 @@ def test_missing_packages(program):
 def test_old_packages(monkeypatch):
     there = importlib.metadata.version
     monkeypatch.setattr(importlib.metadata, "version", lambda p: "0.25.1rc2" if p == "rerun-sdk" else there(p))
-    lowest = checks.EXTRAS["viz"]["rerun-sdk"]
+    lowest = lowest_of("viz")["rerun-sdk"]
     message = f"rerun-sdk 0.25.1rc2 is older than {lowest}: pip install --upgrade 'elastica-gym[viz]'"
     assert checks.missing_extra("viz") == message
 

@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 
+from elastica_gym import files
 from elastica_gym.rl import checkpoints
 
 
@@ -56,8 +57,8 @@ def test_what_a_killed_process_left_is_removed(tmp_path):
 
 def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
     path = tmp_path / "model.zip"
-    checkpoints.write_atomically(path, lambda place: place.write_text("old"))
+    files.write_atomically(path, lambda place: place.write_text("old"))
     with pytest.raises(OSError):
-        checkpoints.write_atomically(path, lambda place: place.joinpath("no").write_text("new"))
+        files.write_atomically(path, lambda place: place.joinpath("no").write_text("new"))
     assert path.read_text() == "old"
     assert os.listdir(tmp_path) == ["model.zip"]

@@ -1,0 +1,34 @@
+"""Files that are whole or not there."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+
+def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
+    """Let ``write`` write a file under another name in the same folder, and move it to ``path`` when it is on disk.
+
+    Parameters
+    ----------
+    path : Path
+        In a folder that exists.
+    write : callable
+        Called with the path to write to.
+    """
+    temporary = path.with_name(f".writing-{path.name}")
+    try:
+        write(temporary)
+        force_to_disk(temporary)
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def force_to_disk(path: Path) -> None:
+    """Return when a file or a folder is on disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
