@@ -12,7 +12,7 @@ from ..envs.task import Task
 from ..envs.tasks import octopus_crawl as crawl
 from ..envs.tasks import snake_forward, snake_reach, snake_steer
 from .gaits import octopus_crawl, octopus_reach, snake_crawl
-from .octopus_fetch import fetch
+from .octopus_fetch import HOMEWARD, act, fetch, see
 
 Script = Callable[[BatchEnv], Array]
 """From a batch of B environments, the actions, (B, A)"""
@@ -48,13 +48,23 @@ def reach_for_the_object(env: BatchEnv) -> Array:
     return octopus_reach(env, np.arctan2(seen[:, 1], seen[:, 0]))
 
 
+def move(env: BatchEnv) -> Array:
+    """Return the actions that grab the object and carry it along the course of the gait, wherever that goes, (B, 42)."""
+    sight, holds = see(env.observations), env.situation().progress.grabbed == 1.0
+    # in the mirror, for the first arm
+    side = np.where(sight.ahead >= 0.0, 1.0, -1.0)
+    course = np.stack([side * np.cos(HOMEWARD.course), np.full(env.num_envs, np.sin(HOMEWARD.course))], axis=1)
+    return act(sight._replace(goal=course), env.elapsed * env.control_dt, holds)
+
+
 _scripts: dict[str, Script] = {
     "SnakeForward": forward,
     "SnakeReach": reach,
     "SnakeSteer": steer,
     "OctopusCrawl": crawl_to_the_commanded_side,
     "OctopusReach": reach_for_the_object,
-    **dict.fromkeys(("OctopusMove", "OctopusGrab", "OctopusReturn", "OctopusFetch"), fetch),
+    "OctopusMove": move,
+    **dict.fromkeys(("OctopusGrab", "OctopusReturn", "OctopusFetch"), fetch),
 }
 """By the name of the task"""
 
