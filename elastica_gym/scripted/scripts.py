@@ -49,12 +49,12 @@ def reach_for_the_object(env: BatchEnv) -> Array:
 
 
 def move(env: BatchEnv) -> Array:
-    """Return the actions that grab the object and carry it along the course of the gait, wherever that goes, (B, 42)."""
+    """Return the actions that grab the object and carry it wherever the gait goes of itself, (B, 42)."""
     sight, holds = see(env.observations), env.situation().progress.grabbed == 1.0
     # in the mirror, for the first arm
     side = np.where(sight.ahead >= 0.0, 1.0, -1.0)
     course = np.stack([side * np.cos(HOMEWARD.course), np.full(env.num_envs, np.sin(HOMEWARD.course))], axis=1)
-    return act(sight._replace(goal=course), env.elapsed * env.control_dt, holds)
+    return act(sight._replace(goal=course), env.elapsed.astype(np.float64) * env.control_dt, holds)
 
 
 _scripts: dict[str, Script] = {
