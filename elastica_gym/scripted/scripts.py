@@ -7,7 +7,7 @@ import numpy as np
 from ..engine.model import Array
 from ..envs.batch import BatchEnv
 from ..envs.goal import GoalTask
-from ..envs.handling import observe_object
+from ..envs.handling import direction_to_object
 from ..envs.task import Task
 from ..envs.tasks import octopus_crawl as crawl
 from ..envs.tasks import snake_forward, snake_reach, snake_steer
@@ -44,8 +44,8 @@ def crawl_to_the_commanded_side(env: BatchEnv) -> Array:
 
 def reach_for_the_object(env: BatchEnv) -> Array:
     """Return the actions of a script that throws an arm at the object, or crawls to it, (B, 42)."""
-    seen = observe_object(env.situation())
-    return octopus_reach(env, np.arctan2(seen[:, 1], seen[:, 0]))
+    forward, right = direction_to_object(env.situation())
+    return octopus_reach(env, np.arctan2(right, forward))
 
 
 def move(env: BatchEnv) -> Array:
