@@ -2,7 +2,7 @@
 
 import re
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, requires, version
 
 CHECKED = ("numpy", "numba", "gymnasium")
@@ -28,15 +28,14 @@ def require_versions() -> None:
 def lowest_of(extra: str) -> dict[str, str]:
     """Return the lowest allowed version of each package of an optional group, such as ``train``.
 
-    None where this package runs from its folder without having been installed: nothing says what it needs.
+    Empty if this package runs from its folder without having been installed: nothing says what it needs.
     """
     try:
         lines = requires("elastica-gym") or []
     except PackageNotFoundError:
         return {}
-    matches = (re.fullmatch(rf"([\w.-]+)\s*([^;]*);\s*extra == ['\"]{extra}['\"]", line) for line in lines)
-    found = {match[1]: re.search(r">=\s*([\d.]+)", match[2]) for match in matches if match}
-    return {name: lowest[1] if lowest else "0" for name, lowest in found.items()}
+    bounds = {name: re.search(r">=\s*([\d.]+)", range_) for name, range_, group in _split(lines) if group == extra}
+    return {name: lowest[1] if lowest else "0" for name, lowest in bounds.items()}
 
 
 def require_within(ranges: Mapping[str, str], installed: Mapping[str, str]) -> None:
@@ -54,8 +53,15 @@ def require_within(ranges: Mapping[str, str], installed: Mapping[str, str]) -> N
 
 def _ranges(requirements: list[str]) -> dict[str, str]:
     """Return the ranges of the packages that are checked, from lines such as ``numba<0.69,>=0.62``."""
-    split = (re.fullmatch(r"([\w.-]+)\s*([^;]*)", line) for line in requirements)
-    return {match[1]: match[2].strip() for match in split if match and match[1] in CHECKED}
+    return {name: range_ for name, range_, group in _split(requirements) if group is None and name in CHECKED}
+
+
+def _split(requirements: list[str]) -> Iterator[tuple[str, str, str | None]]:
+    """Yield name, range and optional group from lines such as ``torch>=2.3; extra == 'train'``."""
+    for line in requirements:
+        match = re.fullmatch(r"([\w.-]+)\s*([^;]*)(?:;\s*extra == ['\"](\w+)['\"])?", line)
+        if match:
+            yield match[1], match[2].strip(), match[3]
 
 
 def parts(text: str) -> Version:

@@ -411,7 +411,7 @@ class BatchEnv(VectorEnv):
         """Write what some environments observe beside what is felt; the others keep what they observed last."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
         goal = self.task.observe_goal(now)
-        wanted = (self.num_envs, sum(len(block.parts) for block in self.task.goal_blocks))
+        wanted = (self.num_envs, len(self.task.goal_layout.names))
         if goal.shape != wanted:
             raise ValueError(
                 f"observe_goal of {self.task.name} must return {wanted}, as goal_blocks says, not {goal.shape}"

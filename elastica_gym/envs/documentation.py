@@ -7,13 +7,12 @@ from typing import Any
 
 from ..bodies.body import Body
 from ..bodies.muscles import DIRECTIONS, N_FUNCTIONS
+from .batch import CONTROL_DT
 from .starts import draw_start, with_object_held
 from .task import Task, TerminationReason
 
 EFFECTS = {"normal": "bends sideways", "binormal": "lifts", "tangent": "twists"}
 """What muscles of each direction do"""
-CONTROL_STEP = 0.05
-"""Duration of a control step unless another is asked for [s]"""
 
 
 def document(task: Task) -> str:
@@ -112,7 +111,7 @@ def _end(task: Task, body: Body) -> Iterator[str]:
         "last sound observation is returned"
     )
     yield (
-        f"Truncated after {task.duration:g} s, which are {round(task.duration / CONTROL_STEP)} control steps. "
+        f"Truncated after {task.duration:g} s, which are {round(task.duration / CONTROL_DT)} control steps. "
         f"Terminated {'; '.join(ends)}."
     )
 

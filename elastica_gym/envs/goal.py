@@ -75,7 +75,7 @@ from ..bodies.observation import Block
 from ..engine.model import Array
 from .batch import BatchEnv
 from .single import SingleEnv
-from .task import Mask, Situation, Task
+from .task import Mask, Situation, Task, distance_from
 from .tasks import octopus_reach, snake_reach
 from .tasks.snake_reach import Goal
 
@@ -131,7 +131,7 @@ def reached(situation: Situation, tolerance: float) -> Array:
 def distance(situation: Situation) -> Array:
     """Return how much nearer the head is to the goal than at reset [m], (B,)."""
     goal, head = situation.goal, situation.pose.head
-    return goal.way - snake_reach.distance_from(goal.x, goal.z, head)
+    return goal.way - distance_from(head, goal.x, goal.z)
 
 
 def goal_conditioned(

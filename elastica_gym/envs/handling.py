@@ -11,7 +11,18 @@ import numpy as np
 from ..bodies import octopus
 from ..bodies.grip import arm_elements, grip
 from ..engine.model import Array, Index, State
-from .task import DIRECTION, HOME, Mask, Situation, Task, has_toppled, in_heading_frame, no_target, way_to
+from .task import (
+    DIRECTION,
+    HOME,
+    Mask,
+    Situation,
+    Task,
+    distance_from,
+    has_toppled,
+    in_heading_frame,
+    no_target,
+    way_to,
+)
 
 WRAPPED = np.radians(200.0)
 """Angle around the object's axis that the touching elements of an arm span where it has grabbed it [rad]"""
@@ -98,8 +109,8 @@ def follow(situation: Situation, state: State) -> Handling:
     keeps = (old.grabbed == 1.0) & (slack * s.control_dt <= SLACK_TIME + 1e-9)
     grabbed = np.where(begins, span >= KEPT, grabs | keeps)
     base_x, base_z = held.base[:, 0], held.base[:, 2]
-    head_away = _away(s.pose.head, s.goal.home_x, s.goal.home_z)
-    crawls = (head_away >= CRAWLED[0]) & (_away(s.pose.centre, s.goal.start_x, s.goal.start_z) >= CRAWLED[1])
+    head_away = distance_from(s.pose.head, s.goal.home_x, s.goal.home_z)
+    crawls = (head_away >= CRAWLED[0]) & (distance_from(s.pose.centre, s.goal.start_x, s.goal.start_z) >= CRAWLED[1])
     carried = held.touching.any(axis=1) & (held.tilt <= UPRIGHT) & ~begins
     return Handling(
         reach=_reach(held.gaps, arm_elements(s.body)),
@@ -127,12 +138,6 @@ def _reach(gaps: Array, arms: Index) -> Array:
     return np.maximum(np.minimum(inner, other), 0.0)
 
 
-def _away(place: Array, x: Array, z: Array) -> Array:
-    """Return the horizontal distance of places (B, 3) from others [m], (B,)."""
-    dx, dz = place[:, 0] - x, place[:, 2] - z
-    return np.sqrt(dx * dx + dz * dz)
-
-
 def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
     """Return a goal whose home is where the head is."""
     return goal_with_home(situation, situation.pose.head[0, 0], situation.pose.head[0, 2])
@@ -141,14 +146,14 @@ def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
 def goal_with_home(situation: Situation, x: float, z: float) -> Goal:
     """Return the goal of one environment whose home is there."""
     pose = situation.pose
-    away = _away(pose.objects[:, 0], np.array([x]), np.array([z]))
+    away = distance_from(pose.objects[:, 0], np.array([x]), np.array([z]))
     return Goal._make([x, z, *pose.centre[0, [0, 2]], *away])
 
 
 def brought(situation: Situation) -> Array:
     """Return by how much the object is nearer to home than at the start [m], (B,)."""
     goal = situation.goal
-    return goal.away - _away(situation.pose.objects[:, 0], goal.home_x, goal.home_z)
+    return goal.away - distance_from(situation.pose.objects[:, 0], goal.home_x, goal.home_z)
 
 
 def direction_to_object(situation: Situation) -> tuple[Array, Array]:
@@ -225,7 +230,7 @@ def home(situation: Situation) -> Array:
     s = situation
 
     def near(head: Array) -> Array:
-        return np.maximum(1.0 - _away(head, s.goal.home_x, s.goal.home_z) / s.body.senses.length, 0.0)
+        return np.maximum(1.0 - distance_from(head, s.goal.home_x, s.goal.home_z) / s.body.senses.length, 0.0)
 
     return s.progress.grabbed * near(s.pose.head) - s.progress_before.grabbed * near(s.before.head)
 
@@ -233,8 +238,8 @@ def home(situation: Situation) -> Array:
 def is_at_home(situation: Situation) -> Mask:
     """Return whether the head is at home, and the object, in the animal's hold, near it, (B,) bool."""
     s, h = situation, situation.progress
-    at_home = _away(s.pose.head, s.goal.home_x, s.goal.home_z) <= AT_HOME
-    return (h.grabbed == 1.0) & at_home & (_away(s.pose.head, h.base_x, h.base_z) <= BROUGHT)
+    at_home = distance_from(s.pose.head, s.goal.home_x, s.goal.home_z) <= AT_HOME
+    return (h.grabbed == 1.0) & at_home & (distance_from(s.pose.head, h.base_x, h.base_z) <= BROUGHT)
 
 
 def has_crawled(situation: Situation) -> Mask:

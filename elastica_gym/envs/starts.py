@@ -49,12 +49,12 @@ def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> No
     velocity = rng.normal(0.0, SPEED, 2)
     for field, resting in zip(state, body.rest, strict=True):
         field[i] = resting[0]
-    (rod,), (start,) = body.rods, body.model.first_slot
-    n, s = rod.n_elements, (np.cumsum(rod.rest_length) - 0.5 * rod.rest_length) / rod.rest_length.sum()
+    (rod,) = body.rods
+    s = (np.cumsum(rod.rest_length) - 0.5 * rod.rest_length) / rod.rest_length.sum()
     waves = sum(b * np.sin((j + 1) * np.pi * s + p) for j, (b, p) in enumerate(zip(bends, phases, strict=True)))
     yields = (rod.radius.min() / rod.radius) ** 4
     turned = np.cumsum(waves * yields * rod.rest_length) / body.senses.length
-    nodes, elements = slice(start, start + n + 1), slice(start, start + n)
+    nodes, elements = body.nodes(0), body.elements(0)
     _turn(heading + turned - turned.mean(), rod.nodal_mass, state.x[i, :, nodes], state.Q[i, :, :, elements])
     state.v[i, 0, nodes], state.v[i, 2, nodes] = velocity
 
@@ -121,8 +121,8 @@ def _place(body: Body, state: State, i: int, away: float, angle: float, clear: f
 
 def _clearance(body: Body, x: Array, place: Array) -> float:
     """Return the horizontal distance between the surfaces of the animal and of the upright object at a place [m]."""
-    (rod,), (start,) = body.rods, body.model.first_slot
-    nodes = x[[0, 2], start : start + rod.n_elements + 1]
+    (rod,) = body.rods
+    nodes = x[[0, 2], body.nodes(0)]
     middles = 0.5 * (nodes[:, 1:] + nodes[:, :-1])
     away = np.linalg.norm(middles - place[:, None], axis=0) - 0.5 * rod.rest_length - rod.radius
     return float(away.min()) - body.cylinders[0].radius
@@ -144,7 +144,7 @@ def with_object_held(rng: np.random.Generator, body: Body, state: State, i: int)
     chosen, heading, velocity = rng.integers(len(levels)), rng.uniform(-np.pi, np.pi), rng.normal(0.0, SPEED, 2)
     for field, kept in zip(state, held, strict=True):
         field[i] = kept[chosen]
-    nodes = slice(int(body.model.first_slot[0]), int(body.model.first_slot[0]) + body.rods[0].n_elements + 1)
+    nodes = body.nodes(0)
     _rotate(heading, state, i, nodes)
     state.v[i, 0, nodes], state.v[i, 2, nodes] = velocity
     state.body_v[i, 0, [0, 2]] = velocity

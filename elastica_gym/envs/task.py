@@ -1,5 +1,6 @@
 """What a task is: a goal, what is seen of it, and what is rewarded. Small pure functions over a batch."""
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -169,6 +170,11 @@ class Task:
         """Names of the reasons why an episode ends, by number: those of `TerminationReason`, then the failures."""
         return (*(reason.name.lower() for reason in TerminationReason), *self.failures)
 
+    @functools.cached_property
+    def goal_layout(self) -> Layout:
+        """Layout of what ``observe_goal`` returns."""
+        return Layout(self.goal_blocks)
+
     def layout(self, body: Body) -> Layout:
         """Return the layout of what an animal of this task observes."""
         clock = f"sine and cosine of a clock with a period of {CLOCK_PERIOD:g} s"
@@ -192,6 +198,17 @@ def way_to(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:
     """Return the way from the head to a place, forward and right, in body lengths, (B,) each."""
     s, length = situation, situation.body.senses.length
     return in_heading_frame(s, (x - s.pose.head[:, 0]) / length, (z - s.pose.head[:, 2]) / length)
+
+
+def distance_from(place: Array, x: Array, z: Array) -> Array:
+    """Return the horizontal distance of places (B, 3) from others [m], (B,)."""
+    dx, dz = place[:, 0] - x, place[:, 2] - z
+    return np.sqrt(dx * dx + dz * dz)
+
+
+def on_the_ground(x: Array, z: Array) -> Array:
+    """Return places on the ground [m], (B, 3)."""
+    return np.stack([x, np.zeros_like(x), z], axis=1)
 
 
 def no_target(goal: Any) -> None:

@@ -182,9 +182,13 @@ def _gap(nodes: Array, base: Array) -> Array:
 
 def fetch(env: BatchEnv) -> Array:
     """Return the actions of the script in a task that follows how the object is handled, (B, 42)."""
-    handled = env.situation().progress
+    return play(env, see(env.observations))
+
+
+def play(env: BatchEnv, sight: Sight) -> Array:
+    """Return the actions of the script on what it goes by, at the time of each environment, (B, 42)."""
     time = env.elapsed.astype(np.float64) * env.control_dt
-    return act(see(env.observations), time, handled.grabbed == 1.0)
+    return act(sight, time, env.situation().progress.grabbed == 1.0)
 
 
 def act(sight: Sight, time: Array, grabbed: Mask) -> Array:

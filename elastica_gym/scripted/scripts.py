@@ -8,11 +8,11 @@ from ..engine.model import Array
 from ..envs.batch import BatchEnv
 from ..envs.goal import GoalTask
 from ..envs.handling import direction_to_object
-from ..envs.task import Task
+from ..envs.task import Task, in_heading_frame
 from ..envs.tasks import octopus_crawl as crawl
-from ..envs.tasks import snake_forward, snake_reach, snake_steer
+from ..envs.tasks import snake_forward, snake_steer
 from .gaits import octopus_crawl, octopus_reach, snake_crawl
-from .octopus_fetch import HOMEWARD, act, fetch, see
+from .octopus_fetch import HOMEWARD, fetch, play, see
 
 Script = Callable[[BatchEnv], Array]
 """From a batch of B environments, the actions, (B, A)"""
@@ -20,12 +20,15 @@ Script = Callable[[BatchEnv], Array]
 
 def forward(env: BatchEnv) -> Array:
     """Return the actions of a crawl that turns towards the initial heading, (B, 42)."""
-    return snake_crawl(env, snake_forward.direction_of_goal(env.situation()))
+    return snake_crawl(env, _bearing(snake_forward.observe_goal(env.situation())))
 
 
 def reach(env: BatchEnv) -> Array:
     """Return the actions of a crawl that turns towards the target, (B, 42)."""
-    return snake_crawl(env, snake_reach.direction_of_goal(env.situation()))
+    s = env.situation()
+    # from the centre of mass, not from the head
+    forward, right = in_heading_frame(s, s.goal.x - s.pose.centre[:, 0], s.goal.z - s.pose.centre[:, 2])
+    return snake_crawl(env, np.arctan2(right, forward))
 
 
 def steer(env: BatchEnv) -> Array:
@@ -38,8 +41,7 @@ def steer(env: BatchEnv) -> Array:
 
 def crawl_to_the_commanded_side(env: BatchEnv) -> Array:
     """Return the actions of the octopus' crawl in the commanded direction, (B, 42)."""
-    seen = crawl.observe_goal(env.situation())
-    return octopus_crawl(env, np.arctan2(seen[:, 1], seen[:, 0]))
+    return octopus_crawl(env, _bearing(crawl.observe_goal(env.situation())))
 
 
 def reach_for_the_object(env: BatchEnv) -> Array:
@@ -50,11 +52,16 @@ def reach_for_the_object(env: BatchEnv) -> Array:
 
 def move(env: BatchEnv) -> Array:
     """Return the actions that grab the object and carry it wherever the gait goes of itself, (B, 42)."""
-    sight, holds = see(env.observations), env.situation().progress.grabbed == 1.0
+    sight = see(env.observations)
     # in the mirror, for the first arm
     side = np.where(sight.ahead >= 0.0, 1.0, -1.0)
     course = np.stack([side * np.cos(HOMEWARD.course), np.full(env.num_envs, np.sin(HOMEWARD.course))], axis=1)
-    return act(sight._replace(goal=course), env.elapsed.astype(np.float64) * env.control_dt, holds)
+    return play(env, sight._replace(goal=course))
+
+
+def _bearing(observed: Array) -> Array:
+    """Return the direction that an observed goal begins with, from the heading, positive to the right [rad], (B,)."""
+    return np.arctan2(observed[:, 1], observed[:, 0])
 
 
 _scripts: dict[str, Script] = {

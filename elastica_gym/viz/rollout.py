@@ -10,7 +10,6 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from ..bodies.body import Body, Pose
-from ..bodies.observation import Layout
 from ..engine.model import Array, Index, State
 
 HOME_RADIUS = 0.1
@@ -299,7 +298,7 @@ def run_rollout(env: Any, policy: Policy, *, seed: int = 0, index: int = 0, **en
 
 def _direction(env: Batch, i: int) -> Array:
     """Return the direction of the goal that the animal observes, in the lab, (3,), or (0,) if it observes none."""
-    layout = Layout(env.task.goal_blocks)
+    layout = env.task.goal_layout
     if not {"goal/forward", "goal/right"} <= set(layout.names):
         return np.zeros(0)
     observed, (hx, hz) = env.task.observe_goal(env.situation())[i], env.pose.heading[i]
@@ -310,7 +309,7 @@ def _direction(env: Batch, i: int) -> Array:
 
 def _home(env: Batch, i: int) -> Array:
     """Return where the animal has to come back to, on the ground, (3,), or (0,) if its task has no such place."""
-    if "home" not in Layout(env.task.goal_blocks):
+    if "home" not in env.task.goal_layout:
         return np.zeros(0)
     goal = env.situation().goal
     return np.array([goal.home_x[i], 0.0, goal.home_z[i]])

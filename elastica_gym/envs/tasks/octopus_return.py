@@ -31,7 +31,7 @@ from ..handling import (
     way_home,
 )
 from ..starts import with_object_held
-from ..task import DIRECTION, HOME, Situation, effort, toppled
+from ..task import DIRECTION, HOME, Situation, effort, on_the_ground, toppled
 
 AWAY = (0.2, 0.6)
 """Least and largest distance of the head from home at reset [m]"""
@@ -66,7 +66,7 @@ def dropped(situation: Situation) -> Array:
 
 def target(goal: Goal) -> Array:
     """Return where home is, on the ground [m], (B, 3)."""
-    return np.stack([goal.home_x, np.zeros_like(goal.home_x), goal.home_z], axis=1)
+    return on_the_ground(goal.home_x, goal.home_z)
 
 
 TASK = handling_task(

@@ -73,12 +73,6 @@ def succeeds(situation: Situation) -> Mask:
     return distance(situation) >= situation.body.senses.length
 
 
-def direction_of_goal(situation: Situation) -> Array:
-    """Return the direction to go as an angle from the heading, positive to the right [rad], (B,)."""
-    seen = observe_goal(situation)
-    return np.arctan2(seen[:, 1], seen[:, 0])
-
-
 TASK = Task(
     name="SnakeForward",
     description=__doc__,

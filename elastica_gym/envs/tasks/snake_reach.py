@@ -22,7 +22,7 @@ from ...bodies import snake
 from ...bodies.observation import Block, single
 from ...engine.model import Array
 from ..starts import draw_start
-from ..task import Mask, Situation, Task, effort, in_heading_frame, way_to
+from ..task import Mask, Situation, Task, distance_from, effort, on_the_ground, way_to
 
 NEAR = 0.05
 """Distance between head and target that counts as success, in body lengths"""
@@ -48,17 +48,11 @@ def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
     radius = np.sqrt(rng.uniform(inner**2, outer**2)) * situation.body.senses.length
     bearing = rng.uniform(-np.pi, np.pi)
     x, z = situation.pose.centre[0, [0, 2]] + radius * np.array([np.cos(bearing), np.sin(bearing)])
-    return Goal._make([x, z, *distance_from(x, z, situation.pose.head)])
-
-
-def distance_from(x: Array, z: Array, place: Array) -> Array:
-    """Return the horizontal distance of places (B, 3) from others [m], (B,)."""
-    dx, dz = x - place[:, 0], z - place[:, 2]
-    return np.sqrt(dx * dx + dz * dz)
+    return Goal._make([x, z, *distance_from(situation.pose.head, x, z)])
 
 
 def _gap(goal: Goal, head: Array, length: float) -> Array:
-    return distance_from(goal.x, goal.z, head) / length
+    return distance_from(head, goal.x, goal.z) / length
 
 
 def gap(situation: Situation) -> Array:
@@ -98,14 +92,7 @@ def distance(situation: Situation) -> Array:
 
 def target(goal: Goal) -> Array:
     """Return the targets' positions on the ground [m], (B, 3)."""
-    return np.stack([goal.x, np.zeros_like(goal.x), goal.z], axis=1)
-
-
-def direction_of_goal(situation: Situation) -> Array:
-    """Return the direction from centre of mass to target as an angle from the heading [rad], (B,)."""
-    s = situation
-    forward, right = in_heading_frame(s, s.goal.x - s.pose.centre[:, 0], s.goal.z - s.pose.centre[:, 2])
-    return np.arctan2(right, forward)
+    return on_the_ground(goal.x, goal.z)
 
 
 TASK = Task(
