@@ -411,9 +411,15 @@ class SceneBuilder:
 
     def _rod_contact_table(self) -> RodContacts:
         rod_of = aligned_zeros((self._slots,), np.int64)
-        for number, rod in enumerate(self._rods):
-            rod_of[self.nodes(rod)] = number
+        last_other, last_clear = aligned_zeros((self._slots,)), aligned_zeros((self._slots,))
         pairs = sorted(self._rod_contacts)
+        touching_themselves = {pair[0] for pair in pairs if pair[0] == pair[1]}
+        for number, rod in enumerate(self._rods):
+            nodes = self.nodes(rod)
+            rod_of[nodes] = number
+            last_other[nodes] = nodes.start - 1
+            # an element and its neighbour never do
+            last_clear[nodes] = np.arange(nodes.start, nodes.stop) - 2 if number in touching_themselves else -1
         touching = [self._rods[number] for number in sorted({number for pair in pairs for number in pair[:2]})]
         spans = [self.elements(rod) for rod in touching]
         slots = np.array([slot for span in spans for slot in range(span.start, span.stop)], dtype=np.int64)
@@ -425,12 +431,11 @@ class SceneBuilder:
             rod_of=rod_of,
             elements=slots,
             stray=STRAY * min((float(rod.radius.min()) for rod in touching), default=1.0),
-            pairs=aligned_zeros((ROOM * slots.size, 3), np.int64),
-            cell=aligned_zeros((slots.size, 3), np.int64),
-            # half as many elements as buckets or fewer, and a power of two
-            bucket=aligned_zeros((2 ** (2 * slots.size).bit_length() + 1,), np.int64),
-            member=aligned_zeros((slots.size,), np.int64),
-            near=aligned_zeros((slots.size,), np.int64),
+            last_other=last_other,
+            last_clear=last_clear,
+            order=slots.copy(),
+            pairs=aligned_zeros((ROOM * slots.size,), np.int64),
+            first=aligned_zeros((ROOM * slots.size,), np.int64),
         )
 
     def _stacked(self, rows: Any) -> Array:

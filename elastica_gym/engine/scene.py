@@ -143,16 +143,16 @@ class RodContacts(NamedTuple):
     """Slots of the elements that may touch others, ascending, (E,) int64"""
     stray: float
     """How far an element may move before pairs of elements are listed anew [m]"""
+    last_other: Array
+    """The last slot before the rod that a slot belongs to, a whole number, (L,)"""
+    last_clear: Array
+    """The last slot before an element that may touch it, however short they are, a whole number, (L,)"""
+    order: Index
+    """The slots in ``elements``, in the order of the last sweep, (E,) int64"""
     pairs: Index
-    """Pairs of elements that may touch until one has strayed too far: slots and row, (P, 3) int64"""
-    cell: Index
-    """The cell that each element was in when they were listed, (E, 3) int64"""
-    bucket: Index
-    """Where the elements of each of H buckets of cells begin in ``member``, and their end, (H + 1,) int64"""
-    member: Index
-    """Elements by bucket, as places in ``elements``, (E,) int64"""
-    near: Index
-    """Those near one element, (E,) int64"""
+    """Pairs of elements that may touch until one has strayed too far, as in `State.pairs`, (P,) int64"""
+    first: Index
+    """The first row of each of these pairs, (P,) int64"""
 
 
 class Pins(NamedTuple):

@@ -162,7 +162,8 @@ def test_rod_and_sphere(ratio, place):
 
     before = total()
     ea.integrate(ea.PositionVerlet(), made, 30_000 * dt, 30_000, progress_bar=False)
-    assert ball.velocity_collection[1, 0] > 0.1 * SPEED
+    # near its end the rod mostly turns, and passes on less than a tenth of its speed
+    assert ball.velocity_collection[1, 0] > 0.01 * SPEED
     assert total() == pytest.approx(before, rel=0.01)
 
 

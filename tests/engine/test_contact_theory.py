@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from elastica_gym.engine import Rod, advance, at_rest, build_model
-from elastica_gym.engine.kernels.contact.rods import list_pairs
+from elastica_gym.engine.kernels.contact.broad_phase import list_pairs
 from elastica_gym.engine.model import Array, Model, State, aligned_zeros
 from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
@@ -157,7 +157,8 @@ def test_what_the_ground_does_to_a_cylinder_is_within_coulombs_cone(seed, fricti
     advance(model, state, control, 0, 1, h, 1)
     N, rubbing, point = (state.body_contact[0, 0][:, part] for part in (0, slice(1, 4), slice(4, 7)))
     assert (N >= 0.0).all() and (np.abs(rubbing[:, 1]) < 1e-9).all()
-    assert (np.linalg.norm(rubbing, axis=1) <= friction * N * (1.0 + 1e-9)).all()
+    # squares of subnormal forces are nought, so a tiny force has a part of no size
+    assert (np.linalg.norm(rubbing, axis=1) <= friction * N * (1.0 + 1e-9) + 1e-100).all()
     each = rubbing + N[:, None] * [0.0, 1.0, 0.0]
     size = 1e-12 * (1.0 + np.abs(each).sum())
     np.testing.assert_allclose(state.body_force[0, 0], each.sum(axis=0), atol=size)
@@ -239,7 +240,7 @@ def coil(n: int) -> Rod:
 def listed_and_met(contact, state):
     s = state
     begin, end, reach = s.scratch[0, 0], s.scratch[0, 1], s.listed_reach[0]
-    return list_pairs(contact, s.order[0], begin, end, s.x[0], reach, 2.0 * contact.stray, s.pairs[0])
+    return list_pairs(s.order[0], begin, end, s.x[0], reach, contact.last_clear, 2.0 * contact.stray, s.pairs[0])
 
 
 def test_pairs_of_the_broad_phase_grow_with_the_rod():

@@ -1,25 +1,13 @@
 """Contact of single pairs, each with its own law: rods on rods, on rigid bodies, and these on planes."""
 
-from math import pi
-
 import numpy as np
 
 from ...jit.compiler import apart, inline
-from ...model import NEAR, Cylinders, Planes
+from ...model import Cylinders, Planes
 from ...scene import Law
+from .broad_phase import refresh_pairs
 from .cylinders import cylinders_on_planes, rods_on_cylinders
-from .nearby import fill, gather
-from .rods import meet, strayed
-
-
-@inline
-def width_of_cells(elements, reach, margin):
-    """Return how wide cells must be for neighbours of an element to be in those around its own."""
-    widest = 0.0
-    for a in range(elements.size):
-        here = reach[elements[a]]
-        widest = here if here > widest else widest
-    return 2.0 * (widest + margin)
+from .rods import meet, reaches
 
 
 @inline
@@ -37,74 +25,61 @@ def first_row(contacts, one, two):
 
 
 @inline
-def list_pairs(contacts, x, length, radius, reach, margin):
-    """List the elements that may touch, by slot, with the row of their rods. Returns how many there are.
-
-    No more of them are listed than there is room for.
-    """
-    c, n_pairs = contacts, 0
-    for a in range(c.elements.size):
-        low = c.elements[a]
-        for i in range(gather(a, c.elements, x, reach, margin, c.cell, c.bucket, c.member, c.near)):
-            high = c.elements[c.near[i]]
-            one, two = c.rod_of[low], c.rod_of[high]
-            # as long as the element can become until it has strayed
-            if one != two or not is_close(low, high, radius[high], length[high] + 2.0 * c.stray):
-                p, end = first_row(c, one, two)
-                while p < end and c.other[p] == two:
-                    if n_pairs < c.pairs.shape[0]:
-                        c.pairs[n_pairs, 0], c.pairs[n_pairs, 1], c.pairs[n_pairs, 2] = low, high, p
-                    n_pairs += 1
-                    p += 1
-    return n_pairs
+def keep_with_law(contacts, n_pairs, slots):
+    """Keep the listed pairs of elements of rods that may touch, each with its first row, and return how many."""
+    c, kept = contacts, 0
+    for a in range(n_pairs):
+        pair = c.pairs[a]
+        one, two = c.rod_of[pair // slots], c.rod_of[pair % slots]
+        p, end = first_row(c, one, two)
+        if p < end and c.other[p] == two:
+            c.pairs[kept], c.first[kept] = pair, p
+            kept += 1
+    return kept
 
 
 @inline
-def is_close(low, high, radius, length):
-    """Return whether two elements of a rod are too near along it to touch."""
-    return high - low - 1 < NEAR * pi * radius / length
-
-
-@inline
-def press_pair(contacts, p, low, high, x, v, Q, w, length, radius, force, torque, touch):
-    """Add the forces between two elements by the law of row p, unless they are neighbours."""
+def press_pair(contacts, p, end, low, high, x, v, Q, w, length, radius, force, torque, touch):
+    """Add the forces between two elements by the laws of their rods, the rows from p on and before ``end``."""
     c = contacts
-    if c.rod_of[low] != c.rod_of[high] or not is_close(low, high, radius[high], length[high]):
+    two = c.rod_of[high]
+    while p < end and c.other[p] == two:
         law = Law(c.stiffness[p], c.damping[p], 0.0, 0.0)
         meet(law, np.uint64(low), np.uint64(high), x, v, Q, w, length, radius, force, torque, touch)
+        p += 1
 
 
 @apart
 def touch_rods(n, contacts, n_pairs, listed_x, listed_reach, scratch, x, v, Q, w, length, radius, force, torque):
     """Add the forces between elements of rods that overlap, pair by pair in the order of their slots.
 
-    Pairs that may touch are listed, with a margin, and the list serves until an element has used up its share
-    of it, as in `rods.rods_on_rods`. Returns how many there are; where there is no room for so many, they are
-    found anew each time.
+    Returns how many pairs are listed; where there is no room for so many, all there are are tried.
     """
-    c, reach, touch = contacts, scratch[0], scratch[1]
-    margin = 2.0 * c.stray
-    for k in range(reach.size):
-        reach[k], touch[k] = 0.5 * length[k] + radius[k], 0.0
-    is_new = n_pairs < 0 or strayed(n, (x[0], x[1], x[2]), reach, listed_x, listed_reach, c.stray) > 0
-    if is_new or n_pairs > c.pairs.shape[0]:
-        fill(c.elements, x, width_of_cells(c.elements, reach, margin), c.cell, c.bucket, c.member)
-    if is_new:
-        n_pairs = list_pairs(c, x, length, radius, reach, margin)
-        for k in range(reach.size):
-            listed_x[0][k], listed_x[1][k], listed_x[2][k] = x[0, k], x[1, k], x[2, k]
-            listed_reach[k] = reach[k]
-    if n_pairs <= c.pairs.shape[0]:
+    c, begin, end, reach, last_far, touch = contacts, scratch[0], scratch[1], scratch[2], scratch[3], scratch[4]
+    slots = begin.size
+    for k in range(slots):
+        touch[k] = 0.0
+    # as long as the elements can become until they have strayed
+    reaches(n, length, radius, 2.0 * c.stray, c.last_other, c.last_clear, reach, last_far)
+    n_pairs, is_new = refresh_pairs(
+        n, c.order, c.pairs, n_pairs, listed_x, listed_reach, c.stray, begin, end, reach, last_far, x
+    )
+    if is_new and n_pairs <= c.pairs.size:
+        n_pairs = keep_with_law(c, n_pairs, slots)
+    reaches(n, length, radius, 0.0, c.last_other, c.last_clear, reach, last_far)
+    if n_pairs <= c.pairs.size:
         for a in range(n_pairs):
-            press_pair(c, c.pairs[a, 2], c.pairs[a, 0], c.pairs[a, 1], x, v, Q, w, length, radius, force, torque, touch)
+            low, high, p = c.pairs[a] // slots, c.pairs[a] % slots, c.first[a]
+            if low <= last_far[high]:
+                last = c.row[c.rod_of[low] + 1]
+                press_pair(c, p, last, low, high, x, v, Q, w, length, radius, force, torque, touch)
     else:
         for a in range(c.elements.size):
-            for i in range(gather(a, c.elements, x, reach, 0.0, c.cell, c.bucket, c.member, c.near)):
-                low, high = c.elements[a], c.elements[c.near[i]]
-                p, end = first_row(c, c.rod_of[low], c.rod_of[high])
-                while p < end and c.other[p] == c.rod_of[high]:
-                    press_pair(c, p, low, high, x, v, Q, w, length, radius, force, torque, touch)
-                    p += 1
+            for b in range(a + 1, c.elements.size):
+                low, high = c.elements[a], c.elements[b]
+                if low <= last_far[high]:
+                    p, last = first_row(c, c.rod_of[low], c.rod_of[high])
+                    press_pair(c, p, last, low, high, x, v, Q, w, length, radius, force, torque, touch)
     return n_pairs
 
 

@@ -1,11 +1,4 @@
-"""Rods on rods, and on themselves.
-
-Pairs of elements that may touch are listed, with a margin, and the list serves until one of them has
-used up its share of it. To list them, a sweep along the axis of the widest extent: elements sorted by
-where their balls begin are compared only with those that begin before they end; as the order is
-nearly right already, sorting by insertion takes a time that grows with the number of elements. Pairs
-are taken in the order of their slots, so that results do not depend on when they were listed.
-"""
+"""Rods on rods, and on themselves."""
 
 from math import pi
 
@@ -14,113 +7,22 @@ import numpy as np
 from ...jit.compiler import FIRST, ONE, apart, inline, stage
 from ...model import NEAR
 from ..math.vectors import column, cross, dot, plus, times
+from .broad_phase import refresh_pairs
 from .law import axis_velocity, friction_force, load, middle, normal_force, overlap, spin_velocity, twist
 
 
-@inline
-def widest(x, order):
-    """Return the axis, 0 to 2, along which the elements spread furthest."""
-    best, axis = -1.0, 0
-    for c in range(3):
-        row = x[c]
-        low = high = row[order[0]]
-        for a in range(order.size):
-            here = row[order[a]]
-            low = here if here < low else low
-            high = here if here > high else high
-        if high - low > best:
-            best, axis = high - low, c
-    return axis
-
-
 @stage
-def reaches(n, length, radius, last_other, last_clear, reach, last_far):
-    """Compute the radius of the ball about each element, and the last slot before it that may touch it."""
+def reaches(n, length, radius, stretch, last_other, last_clear, reach, last_far):
+    """Compute the radius of the ball about each element, and the last slot before it that may touch it.
+
+    This last one as if the element were longer by ``stretch``.
+    """
     for k in range(FIRST, n):
         reach[k] = 0.5 * length[k] + radius[k]
         # a ghost has neither length nor section
-        far = (k - ONE) - NEAR * pi * radius[k] / (length[k] if length[k] > 0.0 else 1.0)
+        far = (k - ONE) - NEAR * pi * radius[k] / (length[k] + stretch if length[k] > 0.0 else 1.0)
         far = far if far < last_clear[k] else last_clear[k]
         last_far[k] = far if far > last_other[k] else last_other[k]
-
-
-@stage
-def strayed(n, x, reach, listed_x, listed_reach, limit):
-    """Count the nodes that have moved, and the balls that have grown, by more than ``limit`` since they were listed."""
-    count = 0
-    for k in range(FIRST, n):
-        d0, d1, d2 = x[0][k] - listed_x[0][k], x[1][k] - listed_x[1][k], x[2][k] - listed_x[2][k]
-        # false for what is not a number, too
-        here = 1 if d0 * d0 + d1 * d1 + d2 * d2 <= limit * limit else 0
-        alike = 1 if reach[k] - listed_reach[k] <= limit else 0
-        count += 1 - here * alike
-    return count
-
-
-@stage
-def extents(n, along, reach, margin, begin, end):
-    """Compute where the balls, larger by a margin, begin and end along an axis."""
-    for k in range(FIRST, n):
-        centre = 0.5 * (along[k] + along[k + ONE])
-        begin[k], end[k] = centre - (reach[k] + margin), centre + (reach[k] + margin)
-
-
-@inline
-def sort(order, key):
-    """Sort the slots in ``order`` by their ``key``, then by number."""
-    for a in range(1, order.size):
-        k = order[a]
-        b = a - 1
-        while b >= 0 and (key[order[b]] > key[k] or (key[order[b]] == key[k] and order[b] > k)):
-            order[b + 1] = order[b]
-            b -= 1
-        order[b + 1] = k
-
-
-@inline
-def sort_pairs(pairs, n_pairs):
-    """Sort the first pairs, by insertion over shrinking gaps (Shell 1959)."""
-    gap = n_pairs // 2
-    while gap > 0:
-        for a in range(gap, n_pairs):
-            pair = pairs[a]
-            b = a - gap
-            while b >= 0 and pairs[b] > pair:
-                pairs[b + gap] = pairs[b]
-                b -= gap
-            pairs[b + gap] = pair
-        gap //= 2
-
-
-@inline
-def list_pairs(contact, order, begin, end, x, reach, margin, pairs):
-    """List the pairs of elements whose balls, larger by a margin, overlap and that are not neighbours.
-
-    Returns how many there are, of which as many are listed as there is room for, and how many the sweep has met.
-    """
-    sort(order, begin)
-    n_pairs = n_met = 0
-    slots = begin.size
-    for a in range(order.size):
-        j = order[a]
-        until = end[j]
-        for b in range(a + 1, order.size):
-            k = order[b]
-            # false for what is not a number, too
-            if not begin[k] <= until:
-                break
-            n_met += 1
-            low, high = (j, k) if j < k else (k, j)
-            if low <= contact.last_clear[high]:
-                between = plus(middle(x, np.uint64(high)), -1.0, middle(x, np.uint64(low)))
-                furthest = reach[low] + reach[high] + 2.0 * margin
-                if dot(between, between) < furthest * furthest:
-                    if n_pairs < pairs.size:
-                        pairs[n_pairs] = low * slots + high
-                    n_pairs += 1
-    if n_pairs <= pairs.size:
-        sort_pairs(pairs, n_pairs)
-    return n_pairs, n_met
 
 
 @apart
@@ -130,17 +32,13 @@ def rods_on_rods(
 ):  # fmt: skip
     """Add the forces between elements of rods that overlap: of two rods, or of one far enough from each other.
 
-    Adds the normal forces to ``touch``. Takes the pairs that are listed, lists them anew
-    if an element may have come nearer than the list allows for, and returns how many there are.
+    Adds the normal forces to ``touch``, and returns how many pairs are listed.
     """
-    margin, slots = 2.0 * contact.stray, begin.size
-    reaches(n, length, radius, contact.last_other, contact.last_clear, reach, last_far)
-    if n_pairs < 0 or strayed(n, (x[0], x[1], x[2]), reach, listed_x, listed_reach, contact.stray) > 0:
-        extents(n, x[widest(x, order)], reach, margin, begin, end)
-        n_pairs, _ = list_pairs(contact, order, begin, end, x, reach, margin, pairs)
-        for k in range(slots):
-            listed_x[0][k], listed_x[1][k], listed_x[2][k] = x[0, k], x[1, k], x[2, k]
-            listed_reach[k] = reach[k]
+    slots = begin.size
+    reaches(n, length, radius, 0.0, contact.last_other, contact.last_clear, reach, last_far)
+    n_pairs, _ = refresh_pairs(
+        n, order, pairs, n_pairs, listed_x, listed_reach, contact.stray, begin, end, reach, contact.last_clear, x
+    )
     if n_pairs <= pairs.size:
         for a in range(n_pairs):
             low, high = pairs[a] // slots, pairs[a] % slots

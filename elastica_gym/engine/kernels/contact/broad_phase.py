@@ -1,0 +1,127 @@
+"""The broad phase: which elements may touch each other.
+
+Pairs are listed with a margin, and the list serves until one of its elements has used up its share of it. To
+list them, a sweep along the axis of the widest extent: elements sorted by where the balls about them begin are
+compared only with those that begin before they end; as the order is nearly right already, sorting by insertion
+takes a time that grows with the number of elements. Pairs are taken in the order of their slots, so that
+results do not depend on when they were listed.
+"""
+
+import numpy as np
+
+from ...jit.compiler import FIRST, ONE, inline, stage
+from ..math.vectors import dot, plus
+from .law import middle
+
+
+@inline
+def widest(x, order):
+    """Return the axis, 0 to 2, along which the elements spread furthest."""
+    best, axis = -1.0, 0
+    for c in range(3):
+        row = x[c]
+        low = high = row[order[0]]
+        for a in range(order.size):
+            here = row[order[a]]
+            low = here if here < low else low
+            high = here if here > high else high
+        if high - low > best:
+            best, axis = high - low, c
+    return axis
+
+
+@stage
+def strayed(n, x, reach, listed_x, listed_reach, limit):
+    """Count the nodes that have moved, and the balls that have grown, by more than ``limit`` since they were listed."""
+    count = 0
+    for k in range(FIRST, n):
+        d0, d1, d2 = x[0][k] - listed_x[0][k], x[1][k] - listed_x[1][k], x[2][k] - listed_x[2][k]
+        # false for what is not a number, too
+        here = 1 if d0 * d0 + d1 * d1 + d2 * d2 <= limit * limit else 0
+        alike = 1 if reach[k] - listed_reach[k] <= limit else 0
+        count += 1 - here * alike
+    return count
+
+
+@stage
+def extents(n, along, reach, margin, begin, end):
+    """Compute where the balls, larger by a margin, begin and end along an axis."""
+    for k in range(FIRST, n):
+        centre = 0.5 * (along[k] + along[k + ONE])
+        begin[k], end[k] = centre - (reach[k] + margin), centre + (reach[k] + margin)
+
+
+@inline
+def sort(order, key):
+    """Sort the slots in ``order`` by their ``key``, then by number."""
+    for a in range(1, order.size):
+        k = order[a]
+        b = a - 1
+        while b >= 0 and (key[order[b]] > key[k] or (key[order[b]] == key[k] and order[b] > k)):
+            order[b + 1] = order[b]
+            b -= 1
+        order[b + 1] = k
+
+
+@inline
+def sort_pairs(pairs, n_pairs):
+    """Sort the first pairs, by insertion over shrinking gaps (Shell 1959)."""
+    gap = n_pairs // 2
+    while gap > 0:
+        for a in range(gap, n_pairs):
+            pair = pairs[a]
+            b = a - gap
+            while b >= 0 and pairs[b] > pair:
+                pairs[b + gap] = pairs[b]
+                b -= gap
+            pairs[b + gap] = pair
+        gap //= 2
+
+
+@inline
+def list_pairs(order, begin, end, x, reach, last_clear, margin, pairs):
+    """List the pairs of elements whose balls, larger by a margin, overlap.
+
+    Without those whose lower slot is beyond the last one that may touch the higher. Returns how many there are, of
+    which as many are listed as there is room for, and how many the sweep has met.
+    """
+    sort(order, begin)
+    n_pairs = n_met = 0
+    slots = begin.size
+    for a in range(order.size):
+        j = order[a]
+        until = end[j]
+        for b in range(a + 1, order.size):
+            k = order[b]
+            # false for what is not a number, too
+            if not begin[k] <= until:
+                break
+            n_met += 1
+            low, high = (j, k) if j < k else (k, j)
+            if low <= last_clear[high]:
+                between = plus(middle(x, np.uint64(high)), -1.0, middle(x, np.uint64(low)))
+                furthest = reach[low] + reach[high] + 2.0 * margin
+                if dot(between, between) < furthest * furthest:
+                    if n_pairs < pairs.size:
+                        pairs[n_pairs] = low * slots + high
+                    n_pairs += 1
+    if n_pairs <= pairs.size:
+        sort_pairs(pairs, n_pairs)
+    return n_pairs, n_met
+
+
+@inline
+def refresh_pairs(n, order, pairs, n_pairs, listed_x, listed_reach, stray, begin, end, reach, last_clear, x):
+    """List the pairs anew if an element may have come nearer than the list allows for.
+
+    Returns how many there are, and whether they are new.
+    """
+    is_new = n_pairs < 0 or strayed(n, (x[0], x[1], x[2]), reach, listed_x, listed_reach, stray) > 0
+    if is_new:
+        margin = 2.0 * stray
+        extents(n, x[widest(x, order)], reach, margin, begin, end)
+        n_pairs, _ = list_pairs(order, begin, end, x, reach, last_clear, margin, pairs)
+        for k in range(begin.size):
+            listed_x[0][k], listed_x[1][k], listed_x[2][k] = x[0, k], x[1, k], x[2, k]
+            listed_reach[k] = reach[k]
+    return n_pairs, is_new
