@@ -1,6 +1,13 @@
 import importlib.util
 
 import pytest
+from hypothesis import settings
+
+# the same examples in every run, so that a test that fails has been broken; others on demand, with
+# --hypothesis-profile=explore
+settings.register_profile("repeat", deadline=None, derandomize=True)
+settings.register_profile("explore", deadline=None, print_blob=True)
+settings.load_profile("repeat")
 
 
 @pytest.fixture(scope="session")

@@ -88,7 +88,7 @@ def require_kept(found: Collision) -> None:
     assert found.least > 0.99 * found.before
 
 
-several = settings(max_examples=15, deadline=None)
+several = settings(max_examples=15)
 
 
 @several

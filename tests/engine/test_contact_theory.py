@@ -23,7 +23,7 @@ laws = st.builds(
     friction=st.floats(0.0, 2.0),
     slip_damping=st.floats(0.0, 100.0),
 )
-many = settings(max_examples=100, deadline=None)
+many = settings(max_examples=100)
 
 
 def direction(rng: np.random.Generator) -> Array:

@@ -17,7 +17,7 @@ from .scenes import energy, momenta, motion, rotations
 
 X, Y, Z = np.eye(3)
 LENGTH = 0.5
-few = settings(max_examples=15, deadline=None, derandomize=True)
+few = settings(max_examples=15)
 
 
 class Shape(NamedTuple):

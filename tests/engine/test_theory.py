@@ -117,7 +117,7 @@ def test_muscles_conserve_momentum():
     assert angular_momentum < 1e-12
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.integers(0, 2**32 - 1), st.booleans())
 def test_internal_loads_balance(seed, is_balanced):
     """Whatever the shape and the muscles, internal forces are in balance, and so are torques.
@@ -200,7 +200,7 @@ def test_rods_of_a_model_do_not_feel_each_other():
             assert np.array_equal(a, b)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1))
 def test_turning_the_world_turns_the_motion(seed):
     rng = np.random.default_rng(seed)

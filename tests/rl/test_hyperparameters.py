@@ -116,7 +116,7 @@ def envs():
 
 @pytest.mark.parametrize("algo", hyperparameters.ALGORITHMS)
 @given(data=st.data())
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow])
 def test_what_is_not_refused_in_one_line_makes_a_model(envs, algo, data):
     base = {"policy": "MlpPolicy", "policy_kwargs": {"net_arch": [4]}, "n_envs": 2, "buffer_size": 500, "n_steps": 5}
     names = sorted(hyperparameters.valid_keys(algo) - {"env_kwargs", "rollout_buffer_kwargs", "replay_buffer_kwargs"})
