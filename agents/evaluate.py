@@ -59,7 +59,7 @@ def main() -> None:
     import tyro
 
     arguments = tyro.cli(EvaluateArguments)
-    from elastica_gym.console.progress import Bar
+    from elastica_gym.progress import Bar
 
     if arguments.video is not None:
         from elastica_gym.rl.films import SIZE, check_film

@@ -80,7 +80,7 @@ def _score_again(arguments: PublishArguments) -> list[Path]:
 def _evaluate(
     arguments: PublishArguments, policy: "TrainedPolicy", env_id: str, env_kwargs: dict[str, Any] | None
 ) -> "Evaluation":
-    from elastica_gym.console.progress import Bar
+    from elastica_gym.progress import Bar
     from elastica_gym.rl.evaluation import evaluate, print_table
 
     with Bar(f"evaluating {arguments.episodes} episodes") as bar:

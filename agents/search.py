@@ -75,7 +75,7 @@ def main() -> None:
 
     arguments = tyro.cli(SearchArguments)
     folder, config = _started(arguments)
-    from elastica_gym.console.progress import Bar
+    from elastica_gym.progress import Bar
 
     with Bar("starting"):
         # Stable-Baselines3 takes seconds to import: not before the arguments are known to be good

@@ -73,7 +73,7 @@ def main() -> None:
     import tyro
 
     arguments = tyro.cli(TrainArguments)
-    from elastica_gym.console.progress import Bar
+    from elastica_gym.progress import Bar
 
     with Bar("starting"):
         folder, config = _resumed(arguments) if arguments.resume else _started(arguments)

@@ -108,7 +108,7 @@ def main() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from elastica_gym.console.progress import track
+    from elastica_gym.progress import track
 
     arguments = tyro.cli(Arguments)
     for env_id in arguments.env:

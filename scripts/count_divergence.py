@@ -28,7 +28,7 @@ class Arguments:
 
 def count(env_id: str, arguments: Arguments) -> tuple[int, int, float]:
     """Return the divergences, the control steps they happened in, and the time step of the physics [s]."""
-    from elastica_gym.console.progress import track
+    from elastica_gym.progress import track
 
     n = arguments.n_envs
     try:

@@ -258,7 +258,7 @@ def main() -> None:
     require_extra("train")
     import tyro
 
-    from elastica_gym.console.progress import track
+    from elastica_gym.progress import track
 
     arguments = tyro.cli(Arguments)
     found = {}

@@ -15,7 +15,7 @@ from PIL import Image
 
 import elastica_gym  # noqa: F401  (registers the environments)
 from elastica_gym.console.bad_input import BadInputError
-from elastica_gym.console.progress import track
+from elastica_gym.progress import track
 from elastica_gym.scripted import scripted_policy
 from elastica_gym.viz import Policy, Rollout, Stage, framing, run_rollout
 from elastica_gym.viz.frames import animal_of, home, objects, outline, trail

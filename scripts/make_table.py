@@ -120,7 +120,7 @@ def pretrained() -> dict[str, str]:
 
 def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
     """Train what has to be, evaluate it, and write the cell's file."""
-    from elastica_gym.console.progress import Bar
+    from elastica_gym.progress import Bar
     from elastica_gym.rl import cards
     from elastica_gym.rl.evaluation import evaluate
     from elastica_gym.rl.policies import Policy, baseline, load_run

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from elastica_gym.console.progress import track
+from elastica_gym.progress import track
 
 ROOT = Path(__file__).resolve().parents[1]
 PICTURE = ROOT / "docs" / "images" / "many_rods.png"

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from elastica_gym.console.bad_input import check_bounds, run_command
-from elastica_gym.console.progress import track
+from elastica_gym.progress import track
 from elastica_gym.rl.seeds import TEST
 
 ENV = "elastica_gym/SnakeForward-v1"

@@ -1,1 +1,1 @@
-"""What commands say to whoever runs them: bad input in one line, and progress."""
+"""What commands say to whoever runs them: bad input in one line."""

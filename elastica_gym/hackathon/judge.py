@@ -7,7 +7,7 @@ from typing import Any, Self
 import numpy as np
 
 from ..console.bad_input import BadInputError, check_bounds, choose_environment, missing_extra
-from ..console.progress import Bar
+from ..progress import Bar
 from ..rl.seeds import target_seeds
 from .policy_process import PolicyError, PolicyProcess
 from .scoring import GENERAL, GOALS, POINTS, Mask, goals_held, score

@@ -69,7 +69,7 @@ def film(
     env_kwargs
         Arguments of the environment.
     """
-    from ..console.progress import Bar
+    from ..progress import Bar
     from ..viz import render_frames, write_video
 
     check_film(path, size)
@@ -89,7 +89,7 @@ def film(
 
 def run_shown(policy: "Policy", env_id: str, *, seed: int, env_kwargs: dict[str, Any]) -> Any:
     """Run one episode of a policy that has begun it, show how far it is, and return the rollout."""
-    from ..console.progress import Bar
+    from ..progress import Bar
     from ..viz import run_rollout
 
     with Bar(f"running the episode of seed {seed}") as bar:

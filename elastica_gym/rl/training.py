@@ -7,6 +7,7 @@ is measured, evaluated, saved and stopped; a run resumed from there goes on as i
 import pickle
 import random
 import signal
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -22,8 +23,8 @@ from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
 
 from ..console.bad_input import BadInputError
-from ..console.progress import ProgressDisplay
 from ..files import write_atomically
+from ..progress import Bar
 from . import cards, curves, transfer
 from .checkpoints import checkpoint_folders, last_whole_checkpoint, write_checkpoint
 from .episodes import Episodes
@@ -236,7 +237,7 @@ class Training:
         """Train until the budget is spent, or until asked to stop, and save. Return whether the budget is spent."""
         previous = {number: signal.signal(number, self._ask_to_stop) for number in (signal.SIGINT, signal.SIGTERM)}
         try:
-            with ProgressDisplay() as self.display:
+            with Bar("training", file=sys.stdout) as self.display:
                 self._compile()
                 self.budget = Budget(
                     steps=self.config["steps"],
@@ -274,7 +275,7 @@ class Training:
             self.model,
             self.adapter,
             steps=self.config["imitate"],
-            show=self.display.update,
+            show=self.display.show,
             after_round=after_round,
             goes_on=self._known_env == self.config["env"],
         )
@@ -331,7 +332,7 @@ class Training:
         self.model.logger.dump(self.model.num_timesteps)
         self.metrics.append(row)
         shown = ("steps", "steps_per_second", "return", "distance", "success")
-        self.display.update(self.spent, {key.replace("steps_per_second", "steps/s"): row[key] for key in shown})
+        self.display.show(self.spent, {key.replace("steps_per_second", "steps/s"): row[key] for key in shown})
 
     @property
     def spent(self) -> float:

@@ -1,10 +1,11 @@
 """Run a simulator to a time."""
 
-import sys
 import time as clock
 from collections.abc import Callable
+from contextlib import nullcontext
 from typing import Any
 
+from ...progress import Bar
 from ..modules.base_system import BaseSystemCollection
 from .symplectic_steppers import SymplecticStepper
 
@@ -45,20 +46,20 @@ def integrate(
         raise ValueError(f"n_steps must be a positive integer, not {n_steps}")
     n_steps, dt, time = int(n_steps), float(final_time) / int(n_steps), float(restart_time)
     simulation = _collection(systems).simulation
-    progress = _Progress(n_steps, progress_bar)
     done, most = 0, 1
-    while done < n_steps:
-        number = round(time / dt)
-        count = min(n_steps - done, simulation.callbacks.steps_to_next(number), most)
-        started = clock.perf_counter()
-        time = simulation.advance(stepper.scheme, dt, count, time)
-        most = max(1, int(count * ENTRY_TIME / max(clock.perf_counter() - started, 1e-9)))
-        simulation.warn_of_divergence()
-        simulation.callbacks.call(time, round(time / dt))
-        simulation.clear_loads()
-        done += count
-        progress.show(done, time)
-    progress.end()
+    with Bar("integrating") if progress_bar else nullcontext() as bar:
+        while done < n_steps:
+            number = round(time / dt)
+            count = min(n_steps - done, simulation.callbacks.steps_to_next(number), most)
+            started = clock.perf_counter()
+            time = simulation.advance(stepper.scheme, dt, count, time)
+            most = max(1, int(count * ENTRY_TIME / max(clock.perf_counter() - started, 1e-9)))
+            simulation.warn_of_divergence()
+            simulation.callbacks.call(time, round(time / dt))
+            simulation.clear_loads()
+            done += count
+            if bar is not None:
+                bar.show(done / n_steps, {"steps": done, "time": time})
     return time
 
 
@@ -74,30 +75,3 @@ def _collection(systems: Any) -> BaseSystemCollection:
     alone.append(systems)
     alone.finalize()
     return alone
-
-
-class _Progress:
-    """A line on standard error that says how far a run is."""
-
-    def __init__(self, total: int, is_on: bool) -> None:
-        self._total, self._is_on = total, is_on
-        self._started = self._shown = clock.perf_counter()
-
-    def show(self, done: int, time: float) -> None:
-        """Say how many steps are done, four times a second and at the end."""
-        now = clock.perf_counter()
-        if self._is_on and (now - self._shown > 0.25 or done == self._total):
-            self._shown = now
-            speed = done / max(now - self._started, 1e-9)
-            print(
-                f"\r{100 * done / self._total:5.1f} %  {done} of {self._total} steps, {speed:,.0f} a second, "
-                f"time {time:.6g} s ",
-                end="",
-                file=sys.stderr,
-                flush=True,
-            )
-
-    def end(self) -> None:
-        """End the line."""
-        if self._is_on:
-            print(file=sys.stderr)

@@ -7,8 +7,6 @@ from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import Self, TextIO, TypeVar
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from tqdm import tqdm
 
 PARTS = 10
@@ -79,6 +77,11 @@ class Bar:
         elif self._lines.is_due(done):
             print(f"{self._name}: {done:.0%}  {text}".rstrip(), file=self._file, flush=True)
 
+    def say(self, text: str) -> None:
+        """Print a line above the bar."""
+        tqdm.write(text, file=self._file)
+        self._file.flush()
+
 
 def track(items: Sequence[Item], name: str) -> Iterator[Item]:
     """Yield items, and show how many of them are done."""
@@ -86,44 +89,6 @@ def track(items: Sequence[Item], name: str) -> Iterator[Item]:
         for i, item in enumerate(items):
             yield item
             bar.show((i + 1) / len(items))
-
-
-class ProgressDisplay:
-    """A progress bar of a training or search with its latest numbers; where there is no terminal, a few lines."""
-
-    def __init__(self) -> None:
-        self._console = Console()
-        self._bar = Progress(
-            SpinnerColumn(),
-            BarColumn(bar_width=24),
-            TaskProgressColumn(),
-            TimeElapsedColumn(),
-            TextColumn("{task.description}"),
-            console=self._console,
-            disable=not self._console.is_terminal,
-        )
-        self._task = self._bar.add_task("compiling", total=1.0)
-        self._lines = LogLines()
-
-    def __enter__(self) -> Self:
-        self._bar.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._bar.stop()
-
-    def update(self, done: float, numbers: dict[str, float]) -> None:
-        """Show that the fraction `done` of the budget is spent, and those of `numbers` that are known already."""
-        text = _text(numbers)
-        self._bar.update(self._task, completed=min(done, 1.0), description=text)
-        if not self._console.is_terminal and self._lines.is_due(done):
-            self._console.print(f"{done:4.0%}  {text}", soft_wrap=True)
-
-    def say(self, text: str) -> None:
-        """Print a line above the bar."""
-        self._console.print(text, soft_wrap=True, markup=False, highlight=False)
 
 
 def _text(numbers: dict[str, float]) -> str:
