@@ -6,6 +6,7 @@ comes, with the object held and upright.
 """
 
 import dataclasses
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +57,7 @@ def make(n: int, arguments: Arguments) -> Any:
 
 def grabs(arguments: Arguments) -> list[Any]:
     """Return the states of octopuses that have just grabbed their object."""
-    from elastica_gym.console.progress import track
+    from elastica_gym.progress import track
 
     batch, found = make(arguments.grabs, arguments), []
     batch.reset(seed=arguments.seed)
@@ -145,11 +146,11 @@ def actions_of(batch: Any, gaits: list[Gait]) -> np.ndarray:
 def main() -> None:
     """Run the command line."""
     require_extra("train")
-    import cma
     import tyro
     import yaml
 
-    from elastica_gym.console.progress import Bar
+    from elastica_gym.progress import Bar
+    from elastica_gym.rl.cmaes import generations, strategy_about
 
     arguments = tyro.cli(Arguments, description=__doc__)
     check_bounds(dataclasses.asdict(arguments), LOWEST)
@@ -170,18 +171,18 @@ def main() -> None:
     rng, start = np.random.default_rng(arguments.seed), numbers_of(HOMEWARD)
     # the period is a tenth of what the rest is
     spread = np.where(np.arange(len(start)) == 27, 0.05, 1.0)
-    strategy = cma.CMAEvolutionStrategy(
-        start,
-        arguments.sigma,
-        {"popsize": arguments.population, "CMA_stds": spread, "seed": 1 + arguments.seed, "verbose": -9},
-    )
+    strategy = strategy_about(start, arguments.sigma * spread, arguments.population, arguments.seed)
+    homes: list[float] = []
+
+    def mean_worth(candidates: np.ndarray) -> np.ndarray:
+        trials = [begin[i] for i in rng.choice(len(begin), arguments.trials, replace=False)]
+        values, comes_home = worth(batch, [gait_of(each) for each in candidates], trials)
+        homes.append(float(comes_home.mean()))
+        return values.mean(axis=1)
+
     with Bar("searching") as bar:
-        for generation in range(1, arguments.generations + 1):
-            candidates = strategy.ask()
-            trials = [begin[i] for i in rng.choice(len(begin), arguments.trials, replace=False)]
-            values, comes_home = worth(batch, [gait_of(np.array(each)) for each in candidates], trials)
-            strategy.tell(candidates, list(-values.mean(axis=1)))
-            numbers = {"home": float(comes_home.mean()), "mean": float(values.mean())}
+        for generation, (_, values) in enumerate(islice(generations(strategy, mean_worth), arguments.generations), 1):
+            numbers = {"home": homes[-1], "mean": float(values.mean())}
             bar.show(generation / arguments.generations, numbers)
     found = gait_of(np.array(strategy.result.xfavorite))
     table = [np.round(row, 2).tolist() for row in found.table]

@@ -1,5 +1,7 @@
 """The search loop: CMA-ES over the parameters of a gait, one generation a batch."""
 
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +11,8 @@ import yaml
 from matplotlib.figure import Figure
 
 from ..console.bad_input import BadInputError
-from ..console.progress import ProgressDisplay
 from ..files import write_atomically
+from ..progress import Bar
 from ..scripted.families import GAITS, Gait, GaitPolicy, check_fits, describe, gait_for
 from . import curves
 from .evaluation import Evaluation, run_episodes
@@ -20,6 +22,26 @@ from .training import Budget
 from .vec_env import BatchVecEnv, make_batch_vec_env
 
 GENERATIONS_BETWEEN_TRIALS = 10
+
+
+def strategy_about(
+    start: np.ndarray, spread: np.ndarray, population: int, seed: int, bounds: Any = (None, None)
+) -> cma.CMAEvolutionStrategy:
+    """Return CMA-ES whose first generation has a mean, a standard deviation for each number, and a size."""
+    # a seed of zero would stand for the clock
+    options = {"popsize": population, "CMA_stds": spread, "bounds": list(bounds), "seed": 1 + seed, "verbose": -9}
+    return cma.CMAEvolutionStrategy(start, 1.0, options)
+
+
+def generations(
+    strategy: cma.CMAEvolutionStrategy, worth: Callable[[np.ndarray], np.ndarray]
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield the candidates of one generation after the other, and what each is worth, of which more is better."""
+    while True:
+        candidates = np.array(strategy.ask())
+        values = worth(candidates)
+        strategy.tell(list(candidates), list(-values))
+        yield candidates, values
 
 
 class Search:
@@ -59,7 +81,7 @@ class Search:
     def run(self) -> None:
         """Search until the budget is spent, and write the plot, also when interrupted."""
         self._table = Table(self.folder / SEARCH)
-        with ProgressDisplay() as self._display:
+        with Bar("searching", file=sys.stdout) as self._display:
             self._compile()
             self.budget = Budget(steps=self.config["evaluations"], minutes=self.config["minutes"])
             try:
@@ -87,18 +109,15 @@ class Search:
         end = min(1.0, (number + 1) / (self.config["restarts"] + 1))
         strategy = self._strategy(number)
         # one generation at least, so that the shortest search finds something
-        generation, goes_on = 0, True
-        while goes_on:
-            candidates = np.array(strategy.ask())
-            values, _ = self._values(self._batch, candidates, self._draw_starts())
-            strategy.tell(list(candidates), list(-values))
-            generation += 1
+        for generation, (candidates, values) in enumerate(generations(strategy, self._worth), 1):
             self.evaluations += len(candidates)
             goes_on = self._spent() < end and not strategy.stop()
             if generation % GENERATIONS_BETWEEN_TRIALS == 0 or not goes_on:
                 self._try(number, strategy.result.xfavorite, candidates[values.argmax()])
             # after the trial, or what the last one finds would be in no row
             self._note(number, generation, values, strategy.sigma)
+            if not goes_on:
+                break
 
     def _strategy(self, number: int) -> cma.CMAEvolutionStrategy:
         """Return CMA-ES about the published gait, or later about one drawn at random."""
@@ -108,20 +127,17 @@ class Search:
         )
         if number:
             start = np.clip(start + 2.0 * spread * self._rng.standard_normal(len(start)), low, high)
-        options = {
-            "popsize": self.config["population"],
-            "CMA_stds": spread,
-            "bounds": [low, high],
-            # zero would stand for the clock
-            "seed": 1 + int(np.random.SeedSequence([self.config["seed"], number]).generate_state(1)[0] >> 1),
-            "verbose": -9,
-        }
-        return cma.CMAEvolutionStrategy(start, 1.0, options)
+        seed = int(np.random.SeedSequence([self.config["seed"], number]).generate_state(1)[0] >> 1)
+        return strategy_about(start, spread, self.config["population"], seed, bounds=[low, high])
 
     def _draw_starts(self) -> list[int]:
         seeds = training_seeds(self.config["seed"], self._n_starts, self.gait.starts)
         self._n_starts += self.gait.starts
         return seeds
+
+    def _worth(self, candidates: np.ndarray) -> np.ndarray:
+        """Return the mean objective of each candidate, all from the same new starts."""
+        return self._values(self._batch, candidates, self._draw_starts())[0]
 
     def _values(self, env: BatchVecEnv, candidates: np.ndarray, seeds: list[int]) -> tuple[np.ndarray, Evaluation]:
         """Return the mean objective of each candidate over the starts with these seeds, and all the episodes."""
@@ -175,7 +191,7 @@ class Search:
         }
         self._table.append(row)
         shown = ("evaluations", "restart", "generation_best", "best_so_far")
-        self._display.update(self._spent(), {key.replace("_", " "): row[key] for key in shown})
+        self._display.show(self._spent(), {key.replace("_", " "): row[key] for key in shown})
 
 
 def plot(folder: Path, title: str, objective: str) -> Figure:
