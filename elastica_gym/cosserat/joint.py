@@ -143,9 +143,11 @@ class FixedJoint(FreeJoint):
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
     ) -> None:
         """Add kt Q2^T vee log(Q2 Q1^T C) - nut (Q2^T w2 - Q1^T w1) to two, and its opposite to one."""
+        from scipy.spatial.transform import Rotation
+
         Q1, Q2 = system_one.director_collection[..., index_one], system_two.director_collection[..., index_two]
         w1, w2 = Q1.T @ system_one.omega_collection[..., index_one], Q2.T @ system_two.omega_collection[..., index_two]
-        angle = _rotation_vector(Q2 @ Q1.T @ self.rest_rotation_matrix)
+        angle = Rotation.from_matrix(Q2 @ Q1.T @ self.rest_rotation_matrix).as_rotvec()
         _twist(system_one, index_one, system_two, index_two, self.kt * (Q2.T @ angle) - self.nut * (w2 - w1))
 
     def lower(self, builder: SceneBuilder, ends: End) -> None:
@@ -221,14 +223,6 @@ class SelfContact(_ContactAsJoint):
 def get_relative_rotation_two_systems(system_one: Any, index_one: int, system_two: Any, index_two: int) -> Array:
     """Return Q1 Q2^T, which as ``rest_rotation_matrix`` keeps two systems as they are, (3, 3)."""
     return system_one.director_collection[..., index_one] @ system_two.director_collection[..., index_two].T
-
-
-def _rotation_vector(R: Array) -> Array:
-    """Return the vector a with R = exp([a]x), (3,)."""
-    axis = 0.5 * np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    size = float(np.linalg.norm(axis))
-    angle = np.arctan2(size, 0.5 * (np.trace(R) - 1.0))
-    return axis * (angle / size if size > 1e-9 else 1.0)
 
 
 def _twist(system_one: Any, index_one: Any, system_two: Any, index_two: Any, torque: Array) -> None:

@@ -1,10 +1,8 @@
 """Joints: springs between two nodes, and between the directions of two elements (Zhang et al. 2019)."""
 
-from math import sqrt
-
 from ..jit.compiler import apart, inline
 from .ends import add_to, director_of, lab_of, material_of, vector_of
-from .math.rotations import half_angle_over_sine
+from .math.rotations import half_angle
 from .math.vectors import cross, dot, plus, times
 
 
@@ -52,12 +50,9 @@ def turn(rest, Q, body_Q, one, two):
         0.5 * (dot(q[0], p[2]) - dot(q[2], p[0])),
         0.5 * (dot(q[1], p[0]) - dot(q[0], p[1])),
     )
-    # as in `curvature.logarithm`: with h = cos(theta/2), theta/|a| is (b/sin b)/h, b = theta/2
     cosine = 0.5 * (dot(q[0], p[0]) + dot(q[1], p[1]) + dot(q[2], p[2])) - 0.5
-    cosine = cosine if cosine < 1.0 else 1.0
-    inv_h = sqrt(2.0 / (1.0 + cosine)) if cosine > 0.0 else sqrt(2.0 * (1.0 - cosine) / dot(axis, axis))
-    size = half_angle_over_sine(0.5 * (1.0 + cosine) * inv_h) * inv_h
-    return lab_of(Q, body_Q, two, times(size, axis))
+    ratio, inv_h = half_angle(cosine, dot(axis, axis))
+    return lab_of(Q, body_Q, two, times(ratio * inv_h, axis))
 
 
 @inline

@@ -6,6 +6,7 @@ several short chains of multiply-adds are done in the time of one.
 """
 
 from ...jit.compiler import inline
+from .roots import inverse_sqrt
 
 
 @inline
@@ -74,3 +75,17 @@ def half_angle_over_sine(h):
     p3 = p3 * zzzz - 0.0001693099597410185
     p3 = p3 * zzzz - 0.0198371469225361
     return p0 + p1 * z + (p2 + p3 * z) * zz
+
+
+@inline
+def half_angle(cosine, a_squared):
+    """Return b/sin b and 1/h for b half the angle theta of a rotation, h = cos b, and a its axial vector.
+
+    The rotation's logarithm is then theta/|a| a, where theta/|a| is (b/sin b)/h. In terms of c, the cosine of theta,
+    1/h^2 is 2/(1 + c), and near a half turn the better conditioned 2 (1 - c)/|a|^2.
+    """
+    c = cosine if cosine < 1.0 else 1.0
+    numerator = 2.0 * (1.0 - c) if c < 0.0 else 2.0
+    denominator = a_squared if c < 0.0 else 1.0 + c
+    inv_h = numerator * inverse_sqrt(numerator * denominator)
+    return half_angle_over_sine(0.5 * (1.0 + c) * inv_h), inv_h

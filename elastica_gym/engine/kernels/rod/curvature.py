@@ -1,8 +1,7 @@
 """Bending and twist: curvature at Voronoi points and the couples it causes."""
 
 from ...jit.compiler import ONE, stage
-from ..math.roots import inverse_sqrt
-from ..math.rotations import half_angle_over_sine
+from ..math.rotations import half_angle
 
 
 @stage
@@ -29,21 +28,14 @@ def relative_rotation(first, n, Q, axis, cosine):
 def logarithm(first, n, is_balanced, inv_rest_voronoi_length, cosine, kappa, lever):
     """Turn the axial vectors a in ``kappa`` into curvatures: Q[k+1] = exp(-D^ [kappa]x) Q[k].
 
-    With c the cosine, kappa = -(theta/|a|) a / D^. With h = cos(theta/2), theta/|a| is (b/sin b)/h,
-    b = theta/2, where 1/h^2 is 2/(1 + c), and near a half turn the better conditioned 2 (1 - c)/|a|^2.
+    With theta the angle of the rotation, kappa = -(theta/|a|) a / D^.
 
     Leaves in ``lever`` what takes a couple from the joint to its elements (see `bending`): kappa D^/2,
     or, balanced, the same with the tangent of theta/2 for theta/2.
     """
     for k in range(first, n):
         a0, a1, a2 = kappa[0][k], kappa[1][k], kappa[2][k]
-        c = cosine[k] if cosine[k] < 1.0 else 1.0
-        a_squared = a0 * a0 + a1 * a1 + a2 * a2
-        numerator = 2.0 * (1.0 - c) if c < 0.0 else 2.0
-        denominator = a_squared if c < 0.0 else 1.0 + c
-        inv_h = numerator * inverse_sqrt(numerator * denominator)
-        h = 0.5 * (1.0 + c) * inv_h
-        ratio = half_angle_over_sine(h)
+        ratio, inv_h = half_angle(cosine[k], a0 * a0 + a1 * a1 + a2 * a2)
         scale = -ratio * inv_h * inv_rest_voronoi_length[k]
         kappa[0][k], kappa[1][k], kappa[2][k] = scale * a0, scale * a1, scale * a2
         scale = -0.5 * inv_h * (inv_h if is_balanced else ratio)
