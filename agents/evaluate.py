@@ -173,7 +173,7 @@ def spreads(env_id: str) -> tuple[str, ...]:
     """Return the ways in which an environment can draw its starts."""
     from elastica_gym.envs import task_of
 
-    return tuple(task_of(env_id).starts)
+    return tuple(task_of(env_id).initial_states)
 
 
 if __name__ == "__main__":

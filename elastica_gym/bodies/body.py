@@ -1,4 +1,4 @@
-"""What every animal has: rods in surroundings, muscles, and senses."""
+"""What every animal has: rods in surroundings, muscles, and sensors."""
 
 import functools
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from .muscles import Muscles, couple_matrix
 from .observation import AXES, Block, single
 
 
-class Senses(NamedTuple):
+class Sensors(NamedTuple):
     """Where an animal feels itself: slots of the Model, and scales that make readings of order one."""
 
     nodes: Index
@@ -63,7 +63,7 @@ class Body:
         In which it is its own image.
     couples : Array
         Couple in the slots of the Model by activation [N m], (A, 3, L).
-    senses : Senses
+    sensors : Sensors
     sim_dt : float
         Time step of the physics unless another is asked for [s].
     frame : str
@@ -81,7 +81,7 @@ class Body:
     muscles: Muscles
     mirror: Mirror | None = None
     couples: Array
-    senses: Senses
+    sensors: Sensors
     sim_dt: float
     frame: str
     order: str
@@ -118,7 +118,7 @@ class Body:
 
     def blocks(self) -> list[Block]:
         """Return the blocks of the observation that `observe` writes, in its order."""
-        s, axes = self.senses, AXES
+        s, axes = self.sensors, AXES
         nodes, places, patches = s.nodes.size, s.joints.size, s.skin.size - 1
 
         def each(count: int, parts: Sequence[str]) -> tuple[str, ...]:
@@ -178,7 +178,7 @@ class Pose(NamedTuple):
     gaps: Array
     """Least distance of each object's surface from the animal's, negative where they overlap [m], (B, C)"""
     sound: Index
-    """1 where all is finite and below the senses' ``fastest``, else 0, (B,) int64"""
+    """1 where all is finite and below the sensors' ``fastest``, else 0, (B,) int64"""
 
     def only(self, envs: slice) -> "Pose":
         """Return views of some environments."""
@@ -277,9 +277,9 @@ def _observe_object(model, state, i, b, pose, row, at, inv_length):
 
 
 @inline
-def _is_sound(model, state, senses, i):
-    """Return whether all is finite in environment i, and below the senses' ``fastest``."""
-    x, v, w, fastest = state.x[i], state.v[i], state.w[i], senses.fastest
+def _is_sound(model, state, sensors, i):
+    """Return whether all is finite in environment i, and below the sensors' ``fastest``."""
+    x, v, w, fastest = state.x[i], state.v[i], state.w[i], sensors.fastest
     sound = True
     for c in range(3):
         for k in range(model.mass.size):
@@ -291,7 +291,7 @@ def _is_sound(model, state, senses, i):
 
 
 @inline
-def _locate(model, state, senses, i, pose):
+def _locate(model, state, sensors, i, pose):
     """Compute the pose of the animal in environment i."""
     x, total, moment = state.x[i], 0.0, (0.0, 0.0, 0.0)
     for k in range(model.mass.size):
@@ -299,40 +299,40 @@ def _locate(model, state, senses, i, pose):
         moment = plus(moment, model.mass[k], column(x, k))
     for c in range(3):
         pose.centre[i, c] = moment[c] / total
-        pose.head[i, c] = x[c, senses.head]
-    pose.upright[i] = state.Q[i, 0, 1, senses.crown]
-    hx = _mean(x[0], senses.front) - _mean(x[0], senses.rear)
-    hz = _mean(x[2], senses.front) - _mean(x[2], senses.rear)
+        pose.head[i, c] = x[c, sensors.head]
+    pose.upright[i] = state.Q[i, 0, 1, sensors.crown]
+    hx = _mean(x[0], sensors.front) - _mean(x[0], sensors.rear)
+    hz = _mean(x[2], sensors.front) - _mean(x[2], sensors.rear)
     size = (hx * hx + hz * hz) ** 0.5
     pose.heading[i, 0], pose.heading[i, 1] = (hx / size, hz / size) if size > 1e-9 else (1.0, 0.0)
 
 
 @inline
-def _read(model, state, levels, senses, i, pose, row):
+def _read(model, state, levels, sensors, i, pose, row):
     """Write the readings of environment i, whose animal has been located, and return how many there are."""
-    n_nodes, n_joints, n_skin = senses.nodes.size, senses.joints.size, senses.skin.size - 1
-    inv_length, at = 1.0 / senses.length, 0
+    n_nodes, n_joints, n_skin = sensors.nodes.size, sensors.joints.size, sensors.skin.size - 1
+    inv_length, at = 1.0 / sensors.length, 0
     hx, hz, centre = pose.heading[i, 0], pose.heading[i, 1], vector(pose.centre[i])
     for p in range(n_nodes):
-        k = senses.nodes[p]
+        k = sensors.nodes[p]
         _write(row, at, inv_length, hx, hz, plus(column(state.x[i], k), -1.0, centre))
         _write(row, at + 3 * n_nodes, inv_length, hx, hz, column(state.v[i], k))
         at += 3
     at = 6 * n_nodes
     for j in range(n_joints):
         for c in range(3):
-            row[at] = state.kappa[i, c, senses.joints[j]] / senses.curvature_scale
+            row[at] = state.kappa[i, c, sensors.joints[j]] / sensors.curvature_scale
             at += 1
     for j in range(n_joints):
         for c in range(2):
-            row[at] = state.Q[i, c, 1, senses.joints[j]]
+            row[at] = state.Q[i, c, 1, sensors.joints[j]]
             at += 1
     if model.planes.stiffness.size > 0:
-        _patches(row, at, state.normal_force[i], senses.skin, n_skin / senses.weight)
+        _patches(row, at, state.normal_force[i], sensors.skin, n_skin / sensors.weight)
         at += n_skin
     bodies = model.cylinders
     if bodies.mass.size > 0:
-        _patches(row, at, state.body_touch[i], senses.skin, n_skin / senses.weight)
+        _patches(row, at, state.body_touch[i], sensors.skin, n_skin / sensors.weight)
         at += n_skin
     for b in range(bodies.mass.size):
         _observe_object(model, state, i, b, pose, row, at, inv_length)
@@ -343,7 +343,7 @@ def _read(model, state, levels, senses, i, pose, row):
 
 
 @entry
-def observe(model, state, levels, senses, pose, low, high, readings, envs):
+def observe(model, state, levels, sensors, pose, low, high, readings, envs):
     """Compute the pose and the readings (B, R or more) of some environments (E,), in the frame of their headings.
 
     Readings are clipped to their least and largest values (R or more,). Where the simulation has diverged, pose and
@@ -360,9 +360,9 @@ def observe(model, state, levels, senses, pose, low, high, readings, envs):
     """
     for e in range(envs.size):
         i = envs[e]
-        pose.sound[i] = 1 if _is_sound(model, state, senses, i) else 0
+        pose.sound[i] = 1 if _is_sound(model, state, sensors, i) else 0
         if pose.sound[i] == 1:
-            _locate(model, state, senses, i, pose)
+            _locate(model, state, sensors, i, pose)
             row = readings[i]
-            for at in range(_read(model, state, levels, senses, i, pose, row)):
+            for at in range(_read(model, state, levels, sensors, i, pose, row)):
                 row[at] = low[at] if row[at] < low[at] else high[at] if row[at] > high[at] else row[at]

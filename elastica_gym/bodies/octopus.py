@@ -17,7 +17,7 @@ import numpy as np
 from ..engine import Rod, build_model
 from ..engine.model import Array
 from ..engine.surroundings import Contact, Cylinder, Plane
-from .body import Body, Senses, couples_of
+from .body import Body, Sensors, couples_of
 from .mirror import Mirror
 from .muscles import OCTOPUS
 
@@ -154,15 +154,15 @@ def octopus() -> Body:
         couples=couples_of(OCTOPUS, [rod], model),
         sim_dt=SIM_DT,
         settling=1.0,
-        senses=_senses(start, float(rod.nodal_mass.sum() * GRAVITY)),
+        sensors=_sensors(start, float(rod.nodal_mass.sum() * GRAVITY)),
     )
 
 
-def _senses(start: int, weight: float) -> Senses:
+def _sensors(start: int, weight: float) -> Sensors:
     arm_nodes, arm_joints = np.array([0, 10, 20, 30, 40]), np.array([4, 11, 18, 25, 32, 39])
     skin = np.array([0, 7, 14, 21, 28, 50])
     last = N_ELEMENTS
-    return Senses(
+    return Sensors(
         nodes=start + np.concatenate([arm_nodes, [MIDDLE], last - arm_nodes[::-1]]),
         joints=start + np.concatenate([arm_joints, last - 2 - arm_joints[::-1]]),
         skin=start + np.concatenate([skin, last - skin[::-1]]),

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..engine import Rod, build_model, stable_time_step
 from ..engine.surroundings import Contact, Plane
-from .body import Body, Senses, couples_of
+from .body import Body, Sensors, couples_of
 from .mirror import Mirror
 from .muscles import SNAKE
 
@@ -94,18 +94,18 @@ def snake(n_elements: int = 50) -> Body:
         frame="forward is the horizontal direction from the middle of the rear half to that of the front half",
         order="tail to head",
         couples=couples_of(SNAKE, [rod], model),
-        senses=_senses(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
+        sensors=_sensors(start, n_elements, float(rod.nodal_mass.sum() * GRAVITY)),
         sim_dt=min(SIM_DT, 0.94 * stable_time_step(rod)),
     )
 
 
-def _senses(start: int, n: int, weight: float) -> Senses:
+def _sensors(start: int, n: int, weight: float) -> Sensors:
     half = n // 2
 
     def spread(first: int, last: int, count: int) -> np.ndarray:
         return start + np.round(np.linspace(first, last, count)).astype(np.int64)
 
-    return Senses(
+    return Sensors(
         nodes=spread(0, n, 9),
         joints=spread(2, n - 4, 10),
         skin=spread(0, n, 9),

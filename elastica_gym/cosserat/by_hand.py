@@ -46,7 +46,7 @@ class Twin:
         builder = SceneBuilder(sim.model, sim.rods, sim.bodies)
         lower(builder, *(copies.get(id(system), system) for system in systems))
         scene = builder.build()
-        sim.state.n_pairs[0] = UNLISTED
+        sim.state.n_neighbours[0] = UNLISTED
         dt = max((body._time_step for body in movers if isinstance(body, RigidBodyBase)), default=0.0)
         load(sim.model, scene, sim.state, sim.control, SILENT, dt, False)
         net = sim.state.force.copy(), sim.state.torque.copy()

@@ -434,7 +434,7 @@ class SceneBuilder:
             last_other=last_other,
             last_clear=last_clear,
             order=slots.copy(),
-            pairs=aligned_zeros((ROOM * slots.size,), np.int64),
+            neighbours=aligned_zeros((ROOM * slots.size,), np.int64),
             first=aligned_zeros((ROOM * slots.size,), np.int64),
         )
 

@@ -251,13 +251,13 @@ class State(NamedTuple):
     """Normal force between an element and cylinders, where there are any [N], (B, L)"""
     rod_touch: Array
     """Normal force between an element and others, where rods touch [N], (B, L)"""
-    n_pairs: Index
+    n_neighbours: Index
     """How many pairs of elements may touch until one has strayed too far, -1 if they are not listed, (B,) int64"""
-    pairs: Index
+    neighbours: Index
     """Those pairs, the lower slot times L plus the higher one, sorted, (B, P) int64"""
-    listed_x: Array
+    neighbour_x: Array
     """Node positions when they were listed [m], (B, 3, L)"""
-    listed_reach: Array
+    neighbour_reach: Array
     """Radii of the balls about elements when they were listed [m], (B, L)"""
     order: Index
     """Slots of the E elements that may touch others, in the order of a sweep: any order will do, the
@@ -316,17 +316,17 @@ def make_state(model: Model, n_envs: int = 1) -> State:
     shapes |= {
         "step": (n_envs,),
         "order": (n_envs, elements.size),
-        "n_pairs": (n_envs,),
-        "pairs": (n_envs, room),
-        "listed_reach": scalar,
+        "n_neighbours": (n_envs,),
+        "neighbours": (n_envs, room),
+        "neighbour_reach": scalar,
     }
-    whole = ("step", "order", "n_pairs", "pairs")
+    whole = ("step", "order", "n_neighbours", "neighbours")
     state = State(
         *(aligned_zeros(shapes.get(name, vector), np.int64 if name in whole else np.float64) for name in State._fields)
     )
     for i in range(3):
         state.Q[:, i, i] = state.body_Q[:, :, i, i] = 1.0
-    state.order[:], state.n_pairs[:] = elements, -1
+    state.order[:], state.n_neighbours[:] = elements, -1
     _assert_disjoint(state)
     return state
 

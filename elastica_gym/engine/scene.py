@@ -149,8 +149,8 @@ class RodContacts(NamedTuple):
     """The last slot before an element that may touch it, however short they are, a whole number, (L,)"""
     order: Index
     """The slots in ``elements``, in the order of the last sweep, (E,) int64"""
-    pairs: Index
-    """Pairs of elements that may touch until one has strayed too far, as in `State.pairs`, (P,) int64"""
+    neighbours: Index
+    """Pairs of elements that may touch until one has strayed too far, as in `State.neighbours`, (P,) int64"""
     first: Index
     """The first row of each of these pairs, (P,) int64"""
 

@@ -86,7 +86,7 @@ class BatchEnv(VectorEnv):
     weights : dict of str to float, optional
         Weights of reward terms that differ from the task's.
     spread : str, optional
-        How the task draws its starts: one of ``task.starts``, by default the first.
+        How the task draws its starts: one of ``task.initial_states``, by default the first.
     body_kwargs : dict, optional
         Passed to the function that makes the body, as ``n_elements`` of the snake.
     render_mode : str, optional
@@ -131,10 +131,10 @@ class BatchEnv(VectorEnv):
         except TypeError as error:
             raise ValueError(f"body_kwargs: {error}") from None
         self.weights = _merge_weights(task, weights or {})
-        self.spread = next(iter(task.starts)) if spread is None else spread
-        if self.spread not in task.starts:
-            raise ValueError(f"spread must be one of {', '.join(task.starts)}, not {spread!r}")
-        self._draw_start = task.starts[self.spread]
+        self.spread = next(iter(task.initial_states)) if spread is None else spread
+        if self.spread not in task.initial_states:
+            raise ValueError(f"spread must be one of {', '.join(task.initial_states)}, not {spread!r}")
+        self._sample_initial_state = task.initial_states[self.spread]
         self.n_threads = available_cpus() if n_threads is None else n_threads
         _require_count("n_threads", self.n_threads, 4096)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
@@ -201,7 +201,7 @@ class BatchEnv(VectorEnv):
             self.body.model,
             self.state,
             self.levels,
-            self.body.senses,
+            self.body.sensors,
             self.pose,
             self._low,
             self._high,
@@ -447,10 +447,10 @@ class BatchEnv(VectorEnv):
         self.activations[begun] = self.levels[begun] = 0.0
         self._ended[begun] = False
         for i in begun.tolist():
-            levels = self._draw_start(self._generators[i], self.body, self.state, i)
+            levels = self._sample_initial_state(self._generators[i], self.body, self.state, i)
             if levels is not None:
                 self.activations[i] = self.levels[i] = levels
-            # a step of no duration moves nothing, and computes curvature and contact for the senses
+            # a step of no duration moves nothing, and computes curvature and contact for the sensors
             advance(self.body.model, self.state, self.control, i, i + 1, 0.0, 1)
             self.state.step[i] = 0
         self._sense(begun)

@@ -8,7 +8,7 @@ from typing import Any
 from ..bodies.body import Body
 from ..bodies.muscles import DIRECTIONS, N_FUNCTIONS
 from .batch import CONTROL_DT
-from .starts import draw_start, with_object_held
+from .initial_states import bent, with_object_held
 from .task import Task, TerminationReason
 
 EFFECTS = {"normal": "bends sideways", "binormal": "lifts", "tangent": "twists"}
@@ -96,9 +96,9 @@ def _rewards(task: Task) -> Iterator[str]:
 def _start(task: Task) -> Iterator[str]:
     yield "## Starting state"
     yield "All is drawn from the environment's own generator. ``spread`` is one of these, by default the first:"
-    yield "\n".join(f"- ``{name}``: {_described(start)}" for name, start in task.starts.items())
-    if any(start is not draw_start and start is not with_object_held for start in task.starts.values()):
-        yield f"The animal itself, unless its arm holds the object: {_described(draw_start)}"
+    yield "\n".join(f"- ``{name}``: {_described(start)}" for name, start in task.initial_states.items())
+    if any(start is not bent and start is not with_object_held for start in task.initial_states.values()):
+        yield f"The animal itself, unless its arm holds the object: {_described(bent)}"
     yield f"The goal: {_described(task.sample_goal)}"
 
 
@@ -107,7 +107,7 @@ def _end(task: Task, body: Body) -> Iterator[str]:
     ends = ["at success"] if task.ends_on_success else []
     ends += [f"as {name} if {_returned(failed).removeprefix('whether ')}" for name, failed in task.failures.items()]
     ends.append(
-        f"as diverged if numbers stop being finite or something is faster than {body.senses.fastest:g} m/s: then the "
+        f"as diverged if numbers stop being finite or something is faster than {body.sensors.fastest:g} m/s: then the "
         "last sound observation is returned"
     )
     yield (

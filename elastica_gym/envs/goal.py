@@ -106,7 +106,7 @@ def sample_object(rng: np.random.Generator, situation: Situation) -> Goal:
 
 def observe_goal(situation: Situation) -> Array:
     """Return the heading, the head's place and the goal, each as x and z of the lab, (B, 6)."""
-    s, length = situation, situation.body.senses.length
+    s, length = situation, situation.body.sensors.length
     goal = np.stack([s.goal.x, s.goal.z], axis=1)
     return np.concatenate([s.pose.heading, s.pose.head[:, [0, 2]] / length, goal / length], axis=1)
 

@@ -186,7 +186,7 @@ def direction_home(situation: Situation) -> tuple[Array, Array]:
 
 def approach(situation: Situation) -> Array:
     """Return by how much an arm's inner half has come nearer to the object in this step, in body lengths, (B,)."""
-    return (situation.progress_before.reach - situation.progress.reach) / situation.body.senses.length
+    return (situation.progress_before.reach - situation.progress.reach) / situation.body.sensors.length
 
 
 def crawl(situation: Situation) -> Array:
@@ -230,7 +230,7 @@ def home(situation: Situation) -> Array:
     s = situation
 
     def near(head: Array) -> Array:
-        return np.maximum(1.0 - distance_from(head, s.goal.home_x, s.goal.home_z) / s.body.senses.length, 0.0)
+        return np.maximum(1.0 - distance_from(head, s.goal.home_x, s.goal.home_z) / s.body.sensors.length, 0.0)
 
     return s.progress.grabbed * near(s.pose.head) - s.progress_before.grabbed * near(s.before.head)
 

@@ -95,9 +95,9 @@ class Task:
         Returns the `Body`; called with the environment's ``body_kwargs``.
     duration : float
         Simulated time of an episode [s].
-    starts : dict of str to callable
+    initial_states : dict of str to callable
         By name of the ``spread``, what writes a new start into an environment and returns the activations that the
-        muscles have reached in it, (42,), or None where they are at rest; see `elastica_gym.envs.starts`.
+        muscles have reached in it, (42,), or None where they are at rest; see `elastica_gym.envs.initial_states`.
     goal_type : type
         A NamedTuple of the numbers that a goal is.
     sample_goal : callable
@@ -133,7 +133,7 @@ class Task:
     name: str
     make_body: Callable[..., Body]
     duration: float
-    starts: dict[str, Callable[[np.random.Generator, Body, State, int], Array | None]]
+    initial_states: dict[str, Callable[[np.random.Generator, Body, State, int], Array | None]]
     goal_type: type[Any]
     sample_goal: Callable[[np.random.Generator, Situation], Any]
     goal_blocks: tuple[Block, ...]
@@ -150,8 +150,8 @@ class Task:
     description: str = ""
 
     def __post_init__(self) -> None:
-        if not self.starts:
-            raise ValueError("starts must have at least one way to draw a start")
+        if not self.initial_states:
+            raise ValueError("initial_states must have at least one way to draw a start")
         weighted = {*self.reward_terms, "diverged"}
         if set(self.reward_weights) != weighted:
             raise ValueError(
@@ -196,7 +196,7 @@ def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, A
 
 def way_to(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:
     """Return the way from the head to a place, forward and right, in body lengths, (B,) each."""
-    s, length = situation, situation.body.senses.length
+    s, length = situation, situation.body.sensors.length
     return in_heading_frame(s, (x - s.pose.head[:, 0]) / length, (z - s.pose.head[:, 2]) / length)
 
 

@@ -149,7 +149,7 @@ class Environment:
         if gaps.min() - body.cylinders[0].radius < CLEAR:
             raise ValueError(f"target_position {self.target_position} is in the animal or within {CLEAR} m of it")
         # pairs that may touch are listed anew, since all has moved
-        self._state.n_pairs[:] = -1
+        self._state.n_neighbours[:] = -1
         self._activations = np.zeros((len(DIRECTIONS), len(self._body.muscles.arms), N_FUNCTIONS))
         self._moments, self._steps, self._started = [], 0, True
         self._keep()
@@ -180,7 +180,7 @@ class Environment:
         if self._steps % round(1.0 / (FRAMES_PER_SECOND * TIME_STEP)) == 0:
             self._keep()
         # false for what is not a number, too
-        is_sound = float(np.abs(self._state.v).max()) < self._body.senses.fastest
+        is_sound = float(np.abs(self._state.v).max()) < self._body.sensors.fastest
         return time + TIME_STEP, self._systems, not is_sound
 
     def post_processing(self, filename_video: str | Path) -> Path:
@@ -209,7 +209,7 @@ class Environment:
         thing = body.cylinders[0]
         return Rollout(
             name="hackathon",
-            body_length=body.senses.length,
+            body_length=body.sensors.length,
             elements_per_rod=(N_ELEMENTS,),
             head_node=MIDDLE,
             step=np.arange(len(self._moments)),

@@ -111,7 +111,7 @@ def _check(env_id: str, targets: int, target_seed: int, n_threads: int, record: 
     from ..envs import task_of
 
     choose_environment(env_id)
-    if not set(KINDS) <= set(task_of(env_id).starts):
+    if not set(KINDS) <= set(task_of(env_id).initial_states):
         raise BadInputError(f"{env_id} has no object to fetch from {', '.join(KINDS)} targets.")
     if not 1 <= targets <= MOST_TARGETS:
         raise BadInputError(f"targets must be from 1 to {MOST_TARGETS}, got {targets}")

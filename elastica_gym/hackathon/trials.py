@@ -86,7 +86,7 @@ class Sampler:
         hold = grip(body, State._make(field[:n] for field in state))
         seen: tuple[Any, ...] = (
             ~self.is_over[going],
-            x[..., body.senses.head],
+            x[..., body.sensors.head],
             (x * mass).sum(axis=2) / mass.sum(),
             hold.head_gap,
             hold.touching.any(axis=1),

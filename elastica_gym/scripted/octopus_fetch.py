@@ -143,7 +143,7 @@ class Sight(NamedTuple):
 def _layout() -> tuple[Layout, int]:
     """Return where observations have what the script goes by, and which of the observed nodes is the head's centre."""
     body = octopus()
-    return TASK.layout(body), body.senses.nodes.tolist().index(body.senses.head)
+    return TASK.layout(body), body.sensors.nodes.tolist().index(body.sensors.head)
 
 
 def see(observations: NDArray[np.float32]) -> Sight:

@@ -187,7 +187,7 @@ class Recorder:
         self._index = index
         self._nodes = np.concatenate([np.arange(s, s + n + 1) for s, n in spans])
         self._elements = np.concatenate([np.arange(s, s + n) for s, n in spans])
-        self._head_node = self._nodes.tolist().index(self.env.body.senses.head)
+        self._head_node = self._nodes.tolist().index(self.env.body.sensors.head)
         self._root_section = np.concatenate([rod.radius * np.sqrt(rod.rest_length) for rod in self.env.body.rods])
         self._moments: deque[dict[str, Array]] = deque(maxlen=keep)
         self._rewards: deque[dict[str, float]] = deque(maxlen=keep)
@@ -240,7 +240,7 @@ class Recorder:
         target, direction, home = series.pop("target"), series.pop("direction"), series.pop("home")
         return Rollout(
             name=env.spec.id if env.spec else env.task.name,
-            body_length=env.body.senses.length,
+            body_length=env.body.sensors.length,
             elements_per_rod=tuple(env.body.model.n_elements.tolist()),
             step=step,
             sim_time=np.asarray(step * env.control_dt, dtype=np.float64),
@@ -249,7 +249,7 @@ class Recorder:
             object_radius=np.array([thing.radius for thing in env.body.cylinders]),
             direction=direction if direction.size else None,
             target=None if np.isnan(target).any() else target,
-            target_radius=0.05 * env.body.senses.length,
+            target_radius=0.05 * env.body.sensors.length,
             home=home if home.size else None,
             rewards={term: np.array([r.get(term, 0.0) for r in self._rewards]) for term in terms},
             activation_names=env.body.activation_names,

@@ -202,7 +202,7 @@ def test_gaps_are_those_that_the_animal_feels(body):
     layout = Layout(body.blocks())
     low, high = layout.low, layout.high
     readings = np.zeros((n, low.size), dtype=np.float32)
-    observe(body.model, state, np.zeros((n, 42)), body.senses, pose, low, high, readings, np.arange(n))
+    observe(body.model, state, np.zeros((n, 42)), body.sensors, pose, low, high, readings, np.arange(n))
     found = grip(body, state)
     np.testing.assert_allclose(found.gaps.min(axis=1), pose.gaps[:, 0], atol=1e-14)
     np.testing.assert_array_equal(found.head_gap, found.gaps[:, 50:70].min(axis=1))

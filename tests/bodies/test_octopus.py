@@ -68,7 +68,7 @@ def self_overlap(body, state):
     """Return how deep the surfaces of elements that touch are in each other [m]."""
     x, radius, slots = state.x[0], body.model.contact_radius, state.x.shape[2]
     deepest = 0.0
-    for pair in state.pairs[0, : state.n_pairs[0]]:
+    for pair in state.neighbours[0, : state.n_neighbours[0]]:
         low, high = divmod(int(pair), slots)
         if state.rod_touch[0, low] > 0.0 and state.rod_touch[0, high] > 0.0:
             a, b, c, d = (tuple(x[:, k]) for k in (low, low + 1, high, high + 1))
@@ -148,7 +148,7 @@ def test_nothing_goes_through_anything(body, scene, seed):
     for _ in range(6):
         # what strikes at 5 m/s goes 8 mm between two looks
         for _ in play(body, state, control, np.sign(rng.uniform(-1.0, 1.0, 42)), 0.3, parts=31):
-            observe(body.model, state, np.zeros((1, 42)), body.senses, pose, low, high, readings, np.arange(1))
+            observe(body.model, state, np.zeros((1, 42)), body.sensors, pose, low, high, readings, np.arange(1))
             assert pose.sound[0] == 1
             assert pose.gaps[0, 0] > -5e-3
             assert ground_clearance(body, state) > -5e-3
@@ -175,7 +175,7 @@ def part_of(body, slot):
 def overlaps(body, state):
     """Return how deep parts of the body are in each other, by the names of both [m]."""
     x, radius, found = state.x[0], body.model.contact_radius, {}
-    for pair in state.pairs[0, : state.n_pairs[0]]:
+    for pair in state.neighbours[0, : state.n_neighbours[0]]:
         low, high = divmod(int(pair), state.x.shape[2])
         if state.rod_touch[0, low] > 0.0 and state.rod_touch[0, high] > 0.0:
             a, b, c, d = (tuple(x[:, k]) for k in (low, low + 1, high, high + 1))
@@ -210,4 +210,4 @@ def test_forty_microseconds(body, scene):
     state, control = scene
     control.couple[0] = np.einsum("a,acl->cl", all_of(0, 0), body.couples)
     advance(body.model, state, control, 0, 1, 4e-5, 5000)
-    assert np.isfinite(state.x).all() and np.abs(state.v).max() < body.senses.fastest
+    assert np.isfinite(state.x).all() and np.abs(state.v).max() < body.sensors.fastest

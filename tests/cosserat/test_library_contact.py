@@ -156,7 +156,7 @@ def test_the_same_bits_however_pairs_are_found(stray):
         return [dict(k=1e3 + i, nu=0.5)]
 
     found = []
-    for changes in ({}, {"pairs": np.zeros(0, dtype=np.int64)}, {"stray": stray}):
+    for changes in ({}, {"neighbours": np.zeros(0, dtype=np.int64)}, {"stray": stray}):
         sim, rods = heap(laws)
         contacts = sim.simulation.scene.rod_contacts._replace(**changes)
         sim.simulation.scene = sim.simulation.scene._replace(rod_contacts=contacts)

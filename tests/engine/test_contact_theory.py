@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from elastica_gym.engine import Rod, advance, at_rest, build_model
-from elastica_gym.engine.kernels.contact.broad_phase import list_pairs
+from elastica_gym.engine.kernels.contact.broad_phase import build_neighbour_list
 from elastica_gym.engine.model import Array, Model, State, aligned_zeros
 from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
@@ -239,8 +239,10 @@ def coil(n: int) -> Rod:
 @numba.njit
 def listed_and_met(contact, state):
     s = state
-    begin, end, reach = s.scratch[0, 0], s.scratch[0, 1], s.listed_reach[0]
-    return list_pairs(s.order[0], begin, end, s.x[0], reach, contact.last_clear, 2.0 * contact.stray, s.pairs[0])
+    begin, end, reach = s.scratch[0, 0], s.scratch[0, 1], s.neighbour_reach[0]
+    return build_neighbour_list(
+        s.order[0], begin, end, s.x[0], reach, contact.last_clear, 2.0 * contact.stray, s.neighbours[0]
+    )
 
 
 def test_pairs_of_the_broad_phase_grow_with_the_rod():
@@ -267,7 +269,7 @@ def test_listing_anew_changes_nothing():
         state.v[0, 2] = np.linspace(1.0, -1.0, state.v.shape[2])
         for _ in range(100):
             if lists_anew:
-                state.n_pairs[:] = -1
+                state.n_neighbours[:] = -1
             advance(model, state, control, 0, 1, 1e-5, 20)
         assert state.rod_touch.max() > 0.0
         ends.append([field.copy() for field in (state.x, state.v, state.Q, state.w)])
@@ -280,11 +282,11 @@ def test_more_pairs_than_there_is_room_for():
     model = build_model([rod], rod_contact=Contact(stiffness=50.0))
     state, control = at_rest(model, [rod])
     cramped = state._replace(
-        pairs=aligned_zeros((1, 4), np.int64),
-        **{name: getattr(state, name).copy() for name in State._fields if name != "pairs"},
+        neighbours=aligned_zeros((1, 4), np.int64),
+        **{name: getattr(state, name).copy() for name in State._fields if name != "neighbours"},
     )
     for each in (state, cramped):
         each.v[0, 2] = np.linspace(1.0, -1.0, state.v.shape[2])
         advance(model, each, control, 0, 1, 1e-5, 2000)
-    assert cramped.n_pairs[0] > 4 and state.rod_touch.max() > 0.0
+    assert cramped.n_neighbours[0] > 4 and state.rod_touch.max() > 0.0
     np.testing.assert_array_equal(state.x, cramped.x)

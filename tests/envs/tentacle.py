@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 
-from elastica_gym.bodies import Body, Senses, couples_of
+from elastica_gym.bodies import Body, Sensors, couples_of
 from elastica_gym.bodies.muscles import DIRECTIONS, Arm, Muscles
 from elastica_gym.engine import Rod, build_model, stable_time_step
 
@@ -41,7 +41,7 @@ def tentacle() -> Body:
         model=model,
         muscles=MUSCLES,
         couples=couples_of(MUSCLES, [rod], model),
-        senses=Senses(
+        sensors=Sensors(
             nodes=first + np.array([8, 16, 24, 32]),
             joints=first + np.array([4, 10, 16, 22, 28]),
             skin=first + np.array([0, 16, 32]),

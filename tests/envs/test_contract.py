@@ -110,7 +110,7 @@ def test_no_observation_is_constant(env_id, make_vec):
     env = make_vec(env_id, 16, duration=2.0)
     seen, _, _ = roll(env, random_actions(env_id, 5, 40, 16), 0)
     env.reset(seed=1)
-    skin = env.body.senses.skin
+    skin = env.body.sensors.skin
     for i, patch in enumerate(itertools.pairwise(skin) if env.body.cylinders else []):
         # every part of the body meets the object
         k = sum(patch) // 2

@@ -64,7 +64,7 @@ def test_a_spec_of_a_task_that_is_not_registered_says_what_is_missing():
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"starts": {}}, "starts must have at least one"),
+        ({"initial_states": {}}, "initial_states must have at least one"),
         ({"reward_weights": {"away": 1.0}}, "reward_weights must have a weight for each of .*diverged, not for away"),
         ({"failures": {"success": AWAY.succeeds}}, "failures must have other names than running, .*, not success"),
     ],

@@ -82,7 +82,7 @@ def test_what_is_far_away_does_not_draw_the_camera_away(make_vec):
         env.goal[0, :2] = far
         distances.append(following(Recorder(env).capture().rollout(), 0, 1.5).distance)
     assert distances[0] == pytest.approx(distances[1], rel=0.01)
-    assert distances[0] < 12.0 * env.body.senses.length
+    assert distances[0] < 12.0 * env.body.sensors.length
 
 
 def test_without_a_render_mode_a_warning_says_how(make_vec):

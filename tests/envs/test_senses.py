@@ -20,8 +20,8 @@ def test_first_observation_knows_curvature_and_contact(make_vec):
     first = int(env.body.model.first_slot[0])
     tangents = np.diff(env.state.x[:, :, first : first + 51], axis=2)
     angles = np.unwrap(np.arctan2(tangents[:, 2], tangents[:, 0]), axis=1)
-    expected = np.diff(angles, axis=1) / (0.35 / 50) / env.body.senses.curvature_scale
-    joints = env.body.senses.joints - first
+    expected = np.diff(angles, axis=1) / (0.35 / 50) / env.body.sensors.curvature_scale
+    joints = env.body.sensors.joints - first
     felt = columns(env, observations, "curvature/")[:, 0::3]
     np.testing.assert_allclose(np.abs(felt), np.abs(expected[:, joints]), atol=2e-6)
     np.testing.assert_allclose(columns(env, observations, "contact/").mean(axis=1), 1.0, rtol=1e-6)

@@ -65,7 +65,7 @@ def test_reaching_early_beats_reaching_late_and_hovering(make_vec):
 def test_targets_fill_the_ring_uniformly(make_vec):
     env = make_vec("elastica_gym/SnakeReach-v1", 2000)
     env.reset(seed=0)
-    away = (env.goal[:, :2] - env.pose.centre[:, [0, 2]]) / env.body.senses.length
+    away = (env.goal[:, :2] - env.pose.centre[:, [0, 2]]) / env.body.sensors.length
     radius, bearing = np.hypot(*away.T), np.arctan2(*away.T)
     assert radius.min() >= 0.5 and radius.max() <= 1.5
     # uniform over area and bearing: quartiles of each

@@ -8,7 +8,7 @@ import elastica_gym
 from elastica_gym.bodies import snake
 from elastica_gym.bodies.observation import single
 from elastica_gym.envs import Task, goal_conditioned
-from elastica_gym.envs.starts import draw_start
+from elastica_gym.envs.initial_states import bent
 from elastica_gym.envs.tasks import snake_reach
 from elastica_gym.scripted import register_script
 from elastica_gym.scripted.gaits import snake_crawl
@@ -40,7 +40,7 @@ def distance(situation):
 
 def away(situation):
     """Return the way made from the start in this step, in body lengths, (B,)."""
-    return (distance(situation) - from_start(situation.before.centre, situation.goal)) / situation.body.senses.length
+    return (distance(situation) - from_start(situation.before.centre, situation.goal)) / situation.body.sensors.length
 
 
 def lost(situation):
@@ -68,7 +68,7 @@ AWAY = Task(
     name="SnakeAway",
     make_body=snake,
     duration=5.0,
-    starts={"bent": draw_start},
+    initial_states={"bent": bent},
     goal_type=Goal,
     sample_goal=sample_start_place,
     goal_blocks=(single("distance_to_make", 0.0, 1.0, "m", "distance to make"),),

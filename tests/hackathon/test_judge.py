@@ -194,7 +194,7 @@ def test_sampling_changes_nothing(control_dt):
     assert samples.time[-1] == pytest.approx(control_dt * len(actions))
     # those within a step are of the same motion: nothing jumps, and the ends are where the batch is
     assert np.abs(np.diff(samples.head, axis=0)).max() < 0.05
-    np.testing.assert_array_equal(samples.head[-1], env.state.x[:, [0, 2], env.body.senses.head])
+    np.testing.assert_array_equal(samples.head[-1], env.state.x[:, [0, 2], env.body.sensors.head])
     assert samples.counted.all()
 
 

@@ -163,7 +163,7 @@ def test_home_is_where_the_task_has_it(env_id):
     hx, hz = batch.pose.heading[1]
     x, _, z = rollout.home[0] - batch.pose.head[1]
     seen = [observations[1, names.index(f"home/{which}")] for which in ("forward", "right")]
-    assert np.array(seen) * batch.body.senses.length == pytest.approx([x * hx + z * hz, z * hx - x * hz], abs=1e-6)
+    assert np.array(seen) * batch.body.sensors.length == pytest.approx([x * hx + z * hz, z * hx - x * hz], abs=1e-6)
     assert rollout.home[0, 1] == 0.0
 
 

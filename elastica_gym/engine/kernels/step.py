@@ -8,11 +8,11 @@ from ..jit.compiler import FIRST, entry, inline
 from ..model import Control, Model, State
 from .bodies import drift_bodies, kick_bodies, orthonormalise_bodies, weigh_bodies
 from .contact.cylinders import cylinders_on_planes, rods_on_cylinders
-from .contact.plane import slide, slip, stick, to_nodes, touch
+from .contact.plane import kinetic_friction, normal_response, slip_velocity, static_friction, to_nodes
 from .contact.rods import rods_on_rods
 from .joints import join
 from .layout import end_of, matrix, rows
-from .queue import take
+from .queue import fetch_add
 from .rod.curvature import bending, logarithm, relative_rotation
 from .rod.dynamics import dynamics
 from .rod.kinematics import kinematics, kinematics_twice, orthonormalise
@@ -99,35 +99,42 @@ def contacts(model, state, i, n):
     if m.rod_contact.is_on:
         begin, end, reach, last_far = s.scratch[i, 0], s.scratch[i, 1], s.scratch[i, 2], s.scratch[i, 3]
         s.rod_touch[i, :] = 0.0
-        s.n_pairs[i] = rods_on_rods(
-            n, m.rod_contact, s.order[i], s.pairs[i], s.n_pairs[i], rows(s.listed_x[i]), s.listed_reach[i], begin, end,
-            reach, last_far, x, v, Q, w, length, radius, s.force[i], s.torque[i], s.rod_touch[i],
+        s.n_neighbours[i] = rods_on_rods(
+            n, m.rod_contact, s.order[i], s.neighbours[i], s.n_neighbours[i], rows(s.neighbour_x[i]),
+            s.neighbour_reach[i], begin, end, reach, last_far, x, v, Q, w, length, radius, s.force[i], s.torque[i],
+            s.rod_touch[i],
         )  # fmt: skip
 
 
 @inline
-def settle(model, state, planes, j, i, first, n):
+def plane_contact(model, state, planes, j, i, first, n):
     """Add the response and friction of plane j to the rods from slot ``first`` to n - 1 of environment i."""
     m, s, p, normal = model, state, planes, planes.normal[j]
     x, v, Q, w = rows(s.x[i]), rows(s.v[i]), matrix(s.Q[i]), rows(s.w[i])
     force, torque, radius = rows(s.force[i]), rows(s.torque[i]), s.radius[i]
     push, axial, axial_material = rows(s.scratch[i]), rows(s.scratch[i, 3:]), rows(s.scratch[i, 6:])
-    hold, hold_rolling, response, carried = s.scratch[i, 9], s.scratch[i, 10], s.scratch[i, 11], s.scratch[i, 12]
+    static_axial, static_rolling, response = s.scratch[i, 9], s.scratch[i, 10], s.scratch[i, 11]
+    carried = s.scratch[i, 12]
     slip_axial, slip_rolling, damping = s.scratch[i, 13], s.scratch[i, 14], s.scratch[i, 15]
     share, weight = (m.share[0], m.share[1]), (m.weight[0], m.weight[1])
 
-    touch(first, n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j, 0],
-          p.surface_tolerance[j, 1], x, radius, share, force, response, damping, carried, axial)  # fmt: skip
-    slip(first, n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling,
-         response)  # fmt: skip
-    n_sticking = slide(
+    normal_response(
+        first, n, normal, p.origin[j], p.stiffness[j], p.damping[j], p.surface_tolerance[j, 0],
+        p.surface_tolerance[j, 1], x, radius, share, force, response, damping, carried, axial,
+    )  # fmt: skip
+    slip_velocity(
+        first, n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response,
+    )  # fmt: skip
+    n_sticking = kinetic_friction(
         first, n, normal, p.slip_tolerance[j], p.kinetic_friction[j], p.static_friction[j], slip_axial, slip_rolling,
-        response, carried, radius, axial, axial_material, push, hold, hold_rolling, torque, s.normal_force[i],
+        response, carried, radius, axial, axial_material, push, static_axial, static_rolling, torque, s.normal_force[i],
     )  # fmt: skip
     to_nodes(first, n, push, force)
     if n_sticking > 0:
-        stick(first, n, normal, p.static_friction[j], radius, share, force, axial, axial_material, hold, hold_rolling,
-              push, torque)  # fmt: skip
+        static_friction(
+            first, n, normal, p.static_friction[j], radius, share, force, axial, axial_material, static_axial,
+            static_rolling, push, torque,
+        )  # fmt: skip
         to_nodes(first, n, push, force)
 
 
@@ -137,7 +144,7 @@ def ground(model, state, i, n, dt):
     m, s, p = model, state, model.planes
     s.normal_force[i, :] = 0.0
     for j in range(p.stiffness.size):
-        settle(m, s, p, j, i, FIRST, n)
+        plane_contact(m, s, p, j, i, FIRST, n)
     if m.cylinders.mass.size > 0:
         cylinders_on_planes(dt, m.cylinders, p, s.body_x[i], s.body_v[i], s.body_Q[i], s.body_w[i], s.body_contact[i],
                             s.body_force[i], s.body_torque[i])  # fmt: skip
@@ -163,7 +170,7 @@ def advance_queue(model, state, control, order, queue, dt, n_substeps, mine):
     """
     n_mine = 0
     n = end_of(model)
-    place: int = take(queue)  # type: ignore[call-arg] # the context is Numba's to give
+    place: int = fetch_add(queue)  # type: ignore[call-arg] # the context is Numba's to give
     while place < order.size:
         i = order[place]
         for k in range(model.mass.size):
@@ -186,7 +193,7 @@ def advance_queue(model, state, control, order, queue, dt, n_substeps, mine):
         state.time[i] = start + n_substeps * dt
         mine[n_mine] = i
         n_mine += 1
-        place = take(queue)
+        place = fetch_add(queue)
     return n_mine
 
 

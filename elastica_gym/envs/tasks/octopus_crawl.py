@@ -16,7 +16,7 @@ import numpy as np
 
 from ...bodies import octopus
 from ...engine.model import Array
-from ..starts import with_object_anywhere
+from ..initial_states import with_object_anywhere
 from ..task import (
     DIRECTION,
     HOME,
@@ -79,12 +79,12 @@ def distance(situation: Situation) -> Array:
 def forward(situation: Situation) -> Array:
     """Return the way made in the commanded direction in this step, in body lengths, (B,)."""
     made = distance(situation) - _along(situation.goal, situation.before.centre)
-    return made / situation.body.senses.length
+    return made / situation.body.sensors.length
 
 
 def succeeds(situation: Situation) -> Mask:
     """Return whether the animal has come half a body length, (B,) bool."""
-    return distance(situation) >= FAR * situation.body.senses.length
+    return distance(situation) >= FAR * situation.body.sensors.length
 
 
 TASK = Task(
@@ -92,7 +92,7 @@ TASK = Task(
     description=__doc__,
     make_body=octopus,
     duration=10.0,
-    starts={"anywhere": with_object_anywhere},
+    initial_states={"anywhere": with_object_anywhere},
     goal_type=Goal,
     sample_goal=sample_goal,
     goal_blocks=(DIRECTION, HOME),

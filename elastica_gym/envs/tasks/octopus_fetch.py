@@ -41,7 +41,7 @@ from ..handling import (
     way_home,
     wrap,
 )
-from ..starts import OBJECT_STARTS
+from ..initial_states import WITH_OBJECT
 from ..task import Mask, Situation, effort, toppled
 
 
@@ -71,7 +71,7 @@ TASK = handling_task(
     name="OctopusFetch",
     description=__doc__,
     duration=20.0,
-    starts={name: OBJECT_STARTS[name] for name in ("anywhere", "arc", "default")},
+    initial_states={name: WITH_OBJECT[name] for name in ("anywhere", "arc", "default")},
     observe_goal=observe_goal,
     reward_terms={
         "crawl": crawl,

@@ -23,7 +23,7 @@ import numpy as np
 
 from ...engine.model import Array
 from ..handling import TO_OBJECT, approach, fallen, handling_task, observe_object, wind, wrap
-from ..starts import OBJECT_STARTS, with_object_nearby
+from ..initial_states import WITH_OBJECT, with_object_nearby
 from ..task import HOME, Mask, Situation, effort, toppled
 
 
@@ -51,7 +51,7 @@ TASK = handling_task(
     name="OctopusGrab",
     description=__doc__,
     duration=10.0,
-    starts={name: OBJECT_STARTS[name] for name in ("default", "arc", "anywhere")} | {"near": with_object_nearby},
+    initial_states={name: WITH_OBJECT[name] for name in ("default", "arc", "anywhere")} | {"near": with_object_nearby},
     goal_blocks=(TO_OBJECT, HOME),
     observe_goal=observe_object,
     reward_terms={

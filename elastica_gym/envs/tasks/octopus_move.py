@@ -20,7 +20,7 @@ import numpy as np
 
 from ...engine.model import Array
 from ..handling import TO_OBJECT, approach, fallen, handling_task, has_moved, move, moved, observe_object
-from ..starts import OBJECT_STARTS
+from ..initial_states import WITH_OBJECT
 from ..task import HOME, Situation, effort, toppled
 
 
@@ -43,7 +43,7 @@ TASK = handling_task(
     name="OctopusMove",
     description=__doc__,
     duration=10.0,
-    starts={name: OBJECT_STARTS[name] for name in ("default", "arc", "anywhere")},
+    initial_states={name: WITH_OBJECT[name] for name in ("default", "arc", "anywhere")},
     goal_blocks=(TO_OBJECT, HOME),
     observe_goal=observe_object,
     reward_terms={

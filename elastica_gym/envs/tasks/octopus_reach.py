@@ -23,7 +23,7 @@ from ...bodies import octopus
 from ...bodies.grip import TOUCH
 from ...engine.model import Array
 from ..handling import TO_OBJECT, observe_object
-from ..starts import OBJECT_STARTS
+from ..initial_states import WITH_OBJECT
 from ..task import HOME, Mask, Situation, Task, effort, has_toppled, no_target, toppled
 
 
@@ -45,7 +45,7 @@ def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
 
 def approach(situation: Situation) -> Array:
     """Return by how much the gap to the object has shrunk in this step, in body lengths, (B,)."""
-    return (situation.before.gaps[:, 0] - situation.pose.gaps[:, 0]) / situation.body.senses.length
+    return (situation.before.gaps[:, 0] - situation.pose.gaps[:, 0]) / situation.body.sensors.length
 
 
 def succeeds(situation: Situation) -> Mask:
@@ -73,7 +73,7 @@ TASK = Task(
     description=__doc__,
     make_body=octopus,
     duration=10.0,
-    starts=OBJECT_STARTS,
+    initial_states=WITH_OBJECT,
     goal_type=Goal,
     sample_goal=sample_goal,
     goal_blocks=(TO_OBJECT, HOME),

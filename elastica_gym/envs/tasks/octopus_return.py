@@ -30,7 +30,7 @@ from ..handling import (
     is_at_home,
     way_home,
 )
-from ..starts import with_object_held
+from ..initial_states import with_object_held
 from ..task import DIRECTION, HOME, Situation, effort, on_the_ground, toppled
 
 AWAY = (0.2, 0.6)
@@ -73,7 +73,7 @@ TASK = handling_task(
     name="OctopusReturn",
     description=__doc__,
     duration=10.0,
-    starts={"held": with_object_held},
+    initial_states={"held": with_object_held},
     sample_goal=sample_goal,
     goal_blocks=(
         DIRECTION._replace(meaning="direction home: forward and right of a unit vector"),

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...bodies import snake
 from ...engine.model import Array
-from ..starts import draw_start
+from ..initial_states import bent
 from ..task import DIRECTION, Mask, Situation, Task, effort, in_heading_frame, no_target
 
 
@@ -55,7 +55,7 @@ def distance(situation: Situation) -> Array:
 def forward(situation: Situation) -> Array:
     """Return the way made along the initial heading in this step, in body lengths, (B,)."""
     made = distance(situation) - _along(situation.goal, situation.before.centre)
-    return made / situation.body.senses.length
+    return made / situation.body.sensors.length
 
 
 def _off_course(goal: Goal, heading: Array) -> Array:
@@ -70,7 +70,7 @@ def heading(situation: Situation) -> Array:
 
 def succeeds(situation: Situation) -> Mask:
     """Return whether the animal has come a body length, (B,) bool."""
-    return distance(situation) >= situation.body.senses.length
+    return distance(situation) >= situation.body.sensors.length
 
 
 TASK = Task(
@@ -78,7 +78,7 @@ TASK = Task(
     description=__doc__,
     make_body=snake,
     duration=10.0,
-    starts={"bent": draw_start},
+    initial_states={"bent": bent},
     goal_type=Goal,
     sample_goal=sample_goal,
     goal_blocks=(DIRECTION,),

@@ -21,7 +21,7 @@ import numpy as np
 from ...bodies import snake
 from ...bodies.observation import Block, single
 from ...engine.model import Array
-from ..starts import draw_start
+from ..initial_states import bent
 from ..task import Mask, Situation, Task, distance_from, effort, on_the_ground, way_to
 
 NEAR = 0.05
@@ -45,7 +45,7 @@ def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
     """Return a target, uniform over the ring around the body."""
     inner, outer = RING
     # uniform over area: the square of the radius is uniform
-    radius = np.sqrt(rng.uniform(inner**2, outer**2)) * situation.body.senses.length
+    radius = np.sqrt(rng.uniform(inner**2, outer**2)) * situation.body.sensors.length
     bearing = rng.uniform(-np.pi, np.pi)
     x, z = situation.pose.centre[0, [0, 2]] + radius * np.array([np.cos(bearing), np.sin(bearing)])
     return Goal._make([x, z, *distance_from(situation.pose.head, x, z)])
@@ -57,7 +57,7 @@ def _gap(goal: Goal, head: Array, length: float) -> Array:
 
 def gap(situation: Situation) -> Array:
     """Return the horizontal distance of the head from the target, in body lengths, (B,)."""
-    return _gap(situation.goal, situation.pose.head, situation.body.senses.length)
+    return _gap(situation.goal, situation.pose.head, situation.body.sensors.length)
 
 
 def observe_goal(situation: Situation) -> Array:
@@ -67,7 +67,7 @@ def observe_goal(situation: Situation) -> Array:
 
 def approach(situation: Situation) -> Array:
     """Return how much nearer the head has come in this step, in body lengths, (B,)."""
-    return _gap(situation.goal, situation.before.head, situation.body.senses.length) - gap(situation)
+    return _gap(situation.goal, situation.before.head, situation.body.sensors.length) - gap(situation)
 
 
 def succeeds(situation: Situation) -> Mask:
@@ -100,7 +100,7 @@ TASK = Task(
     description=__doc__,
     make_body=snake,
     duration=20.0,
-    starts={"bent": draw_start},
+    initial_states={"bent": bent},
     goal_type=Goal,
     sample_goal=sample_goal,
     goal_blocks=(

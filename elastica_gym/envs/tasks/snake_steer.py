@@ -22,7 +22,7 @@ import numpy as np
 from ...bodies import snake
 from ...bodies.observation import Block, single
 from ...engine.model import Array, State
-from ..starts import draw_start
+from ..initial_states import bent
 from ..task import DIRECTION, Mask, Situation, Task, effort, in_heading_frame, no_target
 
 SPEEDS = (0.05, 0.15)
@@ -116,7 +116,7 @@ def follow(situation: Situation, state: State) -> Course:
     """Return how the commands are followed."""
     s, old = situation, situation.progress
     x, z, speed = command(s)
-    way = (s.pose.centre - s.before.centre) / s.body.senses.length
+    way = (s.pose.centre - s.before.centre) / s.body.sensors.length
     # at reset nothing has been done yet, and velocity starts from rest
     lasted = np.where(s.time_left < 1.0, s.control_dt, 0.0)
     share = 1.0 - np.exp(-lasted / SMOOTHING)
@@ -163,7 +163,7 @@ def succeeds(situation: Situation) -> Mask:
 
 def distance(situation: Situation) -> Array:
     """Return the way made in the directions commanded at the time [m], (B,)."""
-    return situation.progress.along * situation.body.senses.length
+    return situation.progress.along * situation.body.sensors.length
 
 
 TASK = Task(
@@ -171,7 +171,7 @@ TASK = Task(
     description=__doc__,
     make_body=snake,
     duration=20.0,
-    starts={"bent": draw_start},
+    initial_states={"bent": bent},
     goal_type=Goal,
     sample_goal=sample_goal,
     goal_blocks=(

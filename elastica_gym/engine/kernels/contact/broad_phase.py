@@ -31,14 +31,18 @@ def widest(x, order):
 
 
 @stage
-def strayed(n, x, reach, listed_x, listed_reach, limit):
+def count_displaced(n, x, reach, neighbour_x, neighbour_reach, limit):
     """Count the nodes that have moved, and the balls that have grown, by more than ``limit`` since they were listed."""
     count = 0
     for k in range(FIRST, n):
-        d0, d1, d2 = x[0][k] - listed_x[0][k], x[1][k] - listed_x[1][k], x[2][k] - listed_x[2][k]
+        d0, d1, d2 = (
+            x[0][k] - neighbour_x[0][k],
+            x[1][k] - neighbour_x[1][k],
+            x[2][k] - neighbour_x[2][k],
+        )
         # false for what is not a number, too
         here = 1 if d0 * d0 + d1 * d1 + d2 * d2 <= limit * limit else 0
-        alike = 1 if reach[k] - listed_reach[k] <= limit else 0
+        alike = 1 if reach[k] - neighbour_reach[k] <= limit else 0
         count += 1 - here * alike
     return count
 
@@ -64,29 +68,29 @@ def sort(order, key):
 
 
 @inline
-def sort_pairs(pairs, n_pairs):
+def sort_pairs(neighbours, n_neighbours):
     """Sort the first pairs, by insertion over shrinking gaps (Shell 1959)."""
-    gap = n_pairs // 2
+    gap = n_neighbours // 2
     while gap > 0:
-        for a in range(gap, n_pairs):
-            pair = pairs[a]
+        for a in range(gap, n_neighbours):
+            pair = neighbours[a]
             b = a - gap
-            while b >= 0 and pairs[b] > pair:
-                pairs[b + gap] = pairs[b]
+            while b >= 0 and neighbours[b] > pair:
+                neighbours[b + gap] = neighbours[b]
                 b -= gap
-            pairs[b + gap] = pair
+            neighbours[b + gap] = pair
         gap //= 2
 
 
 @inline
-def list_pairs(order, begin, end, x, reach, last_clear, margin, pairs):
+def build_neighbour_list(order, begin, end, x, reach, last_clear, margin, neighbours):
     """List the pairs of elements whose balls, larger by a margin, overlap.
 
     Without those whose lower slot is beyond the last one that may touch the higher. Returns how many there are, of
     which as many are listed as there is room for, and how many the sweep has met.
     """
     sort(order, begin)
-    n_pairs = n_met = 0
+    n_neighbours = n_met = 0
     slots = begin.size
     for a in range(order.size):
         j = order[a]
@@ -102,26 +106,28 @@ def list_pairs(order, begin, end, x, reach, last_clear, margin, pairs):
                 between = plus(middle(x, np.uint64(high)), -1.0, middle(x, np.uint64(low)))
                 furthest = reach[low] + reach[high] + 2.0 * margin
                 if dot(between, between) < furthest * furthest:
-                    if n_pairs < pairs.size:
-                        pairs[n_pairs] = low * slots + high
-                    n_pairs += 1
-    if n_pairs <= pairs.size:
-        sort_pairs(pairs, n_pairs)
-    return n_pairs, n_met
+                    if n_neighbours < neighbours.size:
+                        neighbours[n_neighbours] = low * slots + high
+                    n_neighbours += 1
+    if n_neighbours <= neighbours.size:
+        sort_pairs(neighbours, n_neighbours)
+    return n_neighbours, n_met
 
 
 @inline
-def refresh_pairs(n, order, pairs, n_pairs, listed_x, listed_reach, stray, begin, end, reach, last_clear, x):
+def update_neighbour_list(
+    n, order, neighbours, n_neighbours, neighbour_x, neighbour_reach, stray, begin, end, reach, last_clear, x,
+):  # fmt: skip
     """List the pairs anew if an element may have come nearer than the list allows for.
 
     Returns how many there are, and whether they are new.
     """
-    is_new = n_pairs < 0 or strayed(n, (x[0], x[1], x[2]), reach, listed_x, listed_reach, stray) > 0
+    is_new = n_neighbours < 0 or count_displaced(n, (x[0], x[1], x[2]), reach, neighbour_x, neighbour_reach, stray) > 0
     if is_new:
         margin = 2.0 * stray
         extents(n, x[widest(x, order)], reach, margin, begin, end)
-        n_pairs, _ = list_pairs(order, begin, end, x, reach, last_clear, margin, pairs)
+        n_neighbours, _ = build_neighbour_list(order, begin, end, x, reach, last_clear, margin, neighbours)
         for k in range(begin.size):
-            listed_x[0][k], listed_x[1][k], listed_x[2][k] = x[0, k], x[1, k], x[2, k]
-            listed_reach[k] = reach[k]
-    return n_pairs, is_new
+            neighbour_x[0][k], neighbour_x[1][k], neighbour_x[2][k] = x[0, k], x[1, k], x[2, k]
+            neighbour_reach[k] = reach[k]
+    return n_neighbours, is_new

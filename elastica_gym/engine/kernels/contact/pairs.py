@@ -5,9 +5,9 @@ import numpy as np
 from ...jit.compiler import apart, inline
 from ...model import Cylinders, Planes
 from ...scene import Law
-from .broad_phase import refresh_pairs
+from .broad_phase import update_neighbour_list
 from .cylinders import cylinders_on_planes, rods_on_cylinders
-from .rods import meet, reaches
+from .rods import contact_of_pair, reaches
 
 
 @inline
@@ -25,32 +25,34 @@ def first_row(contacts, one, two):
 
 
 @inline
-def keep_with_law(contacts, n_pairs, slots):
+def keep_with_law(contacts, n_neighbours, slots):
     """Keep the listed pairs of elements of rods that may touch, each with its first row, and return how many."""
     c, kept = contacts, 0
-    for a in range(n_pairs):
-        pair = c.pairs[a]
+    for a in range(n_neighbours):
+        pair = c.neighbours[a]
         one, two = c.rod_of[pair // slots], c.rod_of[pair % slots]
         p, end = first_row(c, one, two)
         if p < end and c.other[p] == two:
-            c.pairs[kept], c.first[kept] = pair, p
+            c.neighbours[kept], c.first[kept] = pair, p
             kept += 1
     return kept
 
 
 @inline
-def press_pair(contacts, p, end, low, high, x, v, Q, w, length, radius, force, torque, touch):
+def contact_by_laws(contacts, p, end, low, high, x, v, Q, w, length, radius, force, torque, touch):
     """Add the forces between two elements by the laws of their rods, the rows from p on and before ``end``."""
     c = contacts
     two = c.rod_of[high]
     while p < end and c.other[p] == two:
         law = Law(c.stiffness[p], c.damping[p], 0.0, 0.0)
-        meet(law, np.uint64(low), np.uint64(high), x, v, Q, w, length, radius, force, torque, touch)
+        contact_of_pair(law, np.uint64(low), np.uint64(high), x, v, Q, w, length, radius, force, torque, touch)
         p += 1
 
 
 @apart
-def touch_rods(n, contacts, n_pairs, listed_x, listed_reach, scratch, x, v, Q, w, length, radius, force, torque):
+def contact_of_rods(
+    n, contacts, n_neighbours, neighbour_x, neighbour_reach, scratch, x, v, Q, w, length, radius, force, torque,
+):  # fmt: skip
     """Add the forces between elements of rods that overlap, pair by pair in the order of their slots.
 
     Returns how many pairs are listed; where there is no room for so many, all there are are tried.
@@ -61,30 +63,30 @@ def touch_rods(n, contacts, n_pairs, listed_x, listed_reach, scratch, x, v, Q, w
         touch[k] = 0.0
     # as long as the elements can become until they have strayed
     reaches(n, length, radius, 2.0 * c.stray, c.last_other, c.last_clear, reach, last_far)
-    n_pairs, is_new = refresh_pairs(
-        n, c.order, c.pairs, n_pairs, listed_x, listed_reach, c.stray, begin, end, reach, last_far, x
+    n_neighbours, is_new = update_neighbour_list(
+        n, c.order, c.neighbours, n_neighbours, neighbour_x, neighbour_reach, c.stray, begin, end, reach, last_far, x
     )
-    if is_new and n_pairs <= c.pairs.size:
-        n_pairs = keep_with_law(c, n_pairs, slots)
+    if is_new and n_neighbours <= c.neighbours.size:
+        n_neighbours = keep_with_law(c, n_neighbours, slots)
     reaches(n, length, radius, 0.0, c.last_other, c.last_clear, reach, last_far)
-    if n_pairs <= c.pairs.size:
-        for a in range(n_pairs):
-            low, high, p = c.pairs[a] // slots, c.pairs[a] % slots, c.first[a]
+    if n_neighbours <= c.neighbours.size:
+        for a in range(n_neighbours):
+            low, high, p = c.neighbours[a] // slots, c.neighbours[a] % slots, c.first[a]
             if low <= last_far[high]:
                 last = c.row[c.rod_of[low] + 1]
-                press_pair(c, p, last, low, high, x, v, Q, w, length, radius, force, torque, touch)
+                contact_by_laws(c, p, last, low, high, x, v, Q, w, length, radius, force, torque, touch)
     else:
         for a in range(c.elements.size):
             for b in range(a + 1, c.elements.size):
                 low, high = c.elements[a], c.elements[b]
                 if low <= last_far[high]:
                     p, last = first_row(c, c.rod_of[low], c.rod_of[high])
-                    press_pair(c, p, last, low, high, x, v, Q, w, length, radius, force, torque, touch)
-    return n_pairs
+                    contact_by_laws(c, p, last, low, high, x, v, Q, w, length, radius, force, torque, touch)
+    return n_neighbours
 
 
 @apart
-def touch_bodies(contacts, shapes, scratch, x, v, Q, w, length, radius, bodies, force, torque):
+def contact_with_bodies(contacts, shapes, scratch, x, v, Q, w, length, radius, bodies, force, torque):
     """Add the forces between rods and rigid bodies that overlap."""
     body_x, body_v, body_Q, body_w, body_force, body_torque = bodies
     gap, touch = scratch[0], scratch[1]

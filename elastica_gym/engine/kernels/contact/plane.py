@@ -10,8 +10,8 @@ from ..math.roots import inverse_sqrt
 
 
 @inline
-def sticking(speed, inv_tolerance):
-    """Return how much of friction is static: 1 up to the slip tolerance, falling to 0 at twice of it."""
+def static_fraction(speed, inv_tolerance):
+    """Return the static fraction of friction: 1 up to the slip tolerance, falling to 0 at twice of it."""
     excess = abs(speed) * inv_tolerance - 1.0
     excess = excess if excess > 0.0 else 0.0
     excess = excess if excess < 1.0 else 1.0
@@ -19,14 +19,14 @@ def sticking(speed, inv_tolerance):
 
 
 @inline
-def towards(direction, forward, backward):
+def friction_coefficient(direction, forward, backward):
     """Return the coefficient of friction for motion or a push along +t, along -t, or neither."""
     moving = backward if direction < 0.0 else 0.5 * (forward + backward)
     return forward if direction > 0.0 else moving
 
 
 @stage
-def touch(
+def normal_response(
     first, n, normal, origin, k_plane, nu_plane, surface_tol, surface_part, x, radius, share,
     force, response, damping, carried, axial,
 ):  # fmt: skip
@@ -62,7 +62,7 @@ def touch(
 
 
 @stage
-def slip(
+def slip_velocity(
     first, n, normal, v, Q, w, radius, weight, damping, axial, axial_material, slip_axial, slip_rolling, response,
 ):  # fmt: skip
     """Compute the velocity of the element's lowest point along a and b, and a in the material frame.
@@ -87,14 +87,14 @@ def slip(
 
 
 @stage
-def slide(
+def kinetic_friction(
     first, n, normal, slip_tol, mu, mu_static, slip_axial, slip_rolling, response, carried, radius, axial,
-    axial_material, push, hold, hold_rolling, torque, normal_force,
+    axial_material, push, static_axial, static_rolling, torque, normal_force,
 ):  # fmt: skip
     """Compute kinetic friction, opposite to the slip, with the torque of its rolling part.
 
     Leaves the force on the element, response included, in ``push``, and the most that static friction
-    may be, s mu N (without mu along a, where it depends on the push), in ``hold`` and ``hold_rolling``;
+    may be, s mu N (without mu along a, where it depends on the push), in ``static_axial`` and ``static_rolling``;
     adds N to ``normal_force``. Returns how many elements stick at least in part.
     """
     n0, n1, n2 = normal[0], normal[1], normal[2]
@@ -105,8 +105,8 @@ def slide(
     for k in range(first, n):
         va, vb, N = slip_axial[k], slip_rolling[k], carried[k]
         inv_speed = inverse_sqrt(va * va + vb * vb)
-        sa, sb = sticking(va, inv_slip_tol), sticking(vb, inv_slip_tol)
-        fa = -(1.0 - sa) * towards(va, forward, backward) * N * va * inv_speed
+        sa, sb = static_fraction(va, inv_slip_tol), static_fraction(vb, inv_slip_tol)
+        fa = -(1.0 - sa) * friction_coefficient(va, forward, backward) * N * va * inv_speed
         fb = -(1.0 - sb) * sideways * N * vb * inv_speed
 
         a0, a1, a2 = axial[0][k], axial[1][k], axial[2][k]
@@ -119,15 +119,15 @@ def slide(
         torque[1][k] -= arm * axial_material[1][k]
         torque[2][k] -= arm * axial_material[2][k]
 
-        hold[k], hold_rolling[k] = sa * N, sb * static_sideways * N
+        static_axial[k], static_rolling[k] = sa * N, sb * static_sideways * N
         normal_force[k] += N
         n_sticking += 1 if (sa + sb) * N * may_hold > 0.0 else 0
     return n_sticking
 
 
 @stage
-def stick(
-    first, n, normal, mu_static, radius, share, force, axial, axial_material, hold, hold_rolling,
+def static_friction(
+    first, n, normal, mu_static, radius, share, force, axial, axial_material, static_axial, static_rolling,
     push, torque,
 ):  # fmt: skip
     """Compute static friction from the forces that the response and kinetic friction have already changed.
@@ -147,15 +147,15 @@ def stick(
         r = radius[k]
 
         fa = f0 * a0 + f1 * a1 + f2 * a2
-        most = hold[k] * towards(fa, forward, backward)
+        most = static_axial[k] * friction_coefficient(fa, forward, backward)
         fa = fa if fa < most else most
         fa = fa if fa > -most else -most
 
         fb = f0 * b0 + f1 * b1 + f2 * b2
         twist = torque[0][k] * m0 + torque[1][k] * m1 + torque[2][k] * m2
-        # a ghost has neither radius nor hold
+        # a ghost has neither radius nor static friction
         fb = (fb - 2.0 * twist / (r if r > 0.0 else 1.0)) * (1.0 / 3.0)
-        most = hold_rolling[k]
+        most = static_rolling[k]
         fb = fb if fb < most else most
         fb = fb if fb > -most else -most
 

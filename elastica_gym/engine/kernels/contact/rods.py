@@ -7,7 +7,7 @@ import numpy as np
 from ...jit.compiler import FIRST, ONE, apart, inline, stage
 from ...model import NEAR
 from ..math.vectors import column, cross, dot, plus, times
-from .broad_phase import refresh_pairs
+from .broad_phase import update_neighbour_list
 from .law import axis_velocity, friction_force, load, middle, normal_force, overlap, spin_velocity, twist
 
 
@@ -27,8 +27,8 @@ def reaches(n, length, radius, stretch, last_other, last_clear, reach, last_far)
 
 @apart
 def rods_on_rods(
-    n, contact, order, pairs, n_pairs, listed_x, listed_reach, begin, end, reach, last_far, x, v, Q, w, length, radius,
-    force, torque, touch,
+    n, contact, order, neighbours, n_neighbours, neighbour_x, neighbour_reach, begin, end, reach, last_far, x, v, Q, w,
+    length, radius, force, torque, touch,
 ):  # fmt: skip
     """Add the forces between elements of rods that overlap: of two rods, or of one far enough from each other.
 
@@ -36,25 +36,40 @@ def rods_on_rods(
     """
     slots = begin.size
     reaches(n, length, radius, 0.0, contact.last_other, contact.last_clear, reach, last_far)
-    n_pairs, _ = refresh_pairs(
-        n, order, pairs, n_pairs, listed_x, listed_reach, contact.stray, begin, end, reach, contact.last_clear, x
+    n_neighbours, _ = update_neighbour_list(
+        n,
+        order,
+        neighbours,
+        n_neighbours,
+        neighbour_x,
+        neighbour_reach,
+        contact.stray,
+        begin,
+        end,
+        reach,
+        contact.last_clear,
+        x,
     )
-    if n_pairs <= pairs.size:
-        for a in range(n_pairs):
-            low, high = pairs[a] // slots, pairs[a] % slots
+    if n_neighbours <= neighbours.size:
+        for a in range(n_neighbours):
+            low, high = neighbours[a] // slots, neighbours[a] % slots
             if low <= last_far[high]:
-                meet(contact, np.uint64(low), np.uint64(high), x, v, Q, w, length, radius, force, torque, touch)
+                contact_of_pair(
+                    contact, np.uint64(low), np.uint64(high), x, v, Q, w, length, radius, force, torque, touch
+                )
     else:
         # no room for so many: all of them, in the same order
         for low in range(slots - 1):
             for high in range(low + 1, slots - 1):
                 if low <= last_far[high] and radius[low] > 0.0 and radius[high] > 0.0:
-                    meet(contact, np.uint64(low), np.uint64(high), x, v, Q, w, length, radius, force, torque, touch)
-    return n_pairs
+                    contact_of_pair(
+                        contact, np.uint64(low), np.uint64(high), x, v, Q, w, length, radius, force, torque, touch
+                    )
+    return n_neighbours
 
 
 @inline
-def meet(contact, j, k, x, v, Q, w, length, radius, force, torque, touch):
+def contact_of_pair(contact, j, k, x, v, Q, w, length, radius, force, torque, touch):
     """Add the forces between elements j and k, if they overlap."""
     at_j, at_k = middle(x, j), middle(x, k)
     between = plus(at_k, -1.0, at_j)
@@ -70,10 +85,10 @@ def meet(contact, j, k, x, v, Q, w, length, radius, force, torque, touch):
             if contact.friction > 0.0:
                 arm_j, arm_k = times(radius[j] - 0.5 * g, n), times(0.5 * g - radius[k], n)
                 u = plus(u, 1.0, plus(spin_velocity(Q, w, j, arm_j), -1.0, spin_velocity(Q, w, k, arm_k)))
-                rub = friction_force(n, u, N, contact.friction, contact.slip_damping)
-                push = plus(push, 1.0, rub)
-                twist(torque, Q, j, cross(rub, arm_j))
-                twist(torque, Q, k, cross(arm_k, rub))
+                friction = friction_force(n, u, N, contact.friction, contact.slip_damping)
+                push = plus(push, 1.0, friction)
+                twist(torque, Q, j, cross(friction, arm_j))
+                twist(torque, Q, k, cross(arm_k, friction))
             load(force, j, s, times(-1.0, push))
             load(force, k, t, push)
             touch[j] += N

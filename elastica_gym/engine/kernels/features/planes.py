@@ -3,7 +3,7 @@
 from ...jit.compiler import ONE, inline
 from ..contact.pairs import ground_bodies
 from ..layout import span_of
-from ..step import settle
+from ..step import plane_contact
 
 
 @inline
@@ -16,7 +16,7 @@ def apply(model, scene, state, control):
         # the first node reads a push from before
         for d in range(3):
             state.scratch[0, d, first - ONE] = 0.0
-        settle(model, state, scene.planes, j, 0, first, n)
+        plane_contact(model, state, scene.planes, j, 0, first, n)
 
 
 @inline

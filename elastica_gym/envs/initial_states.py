@@ -34,7 +34,7 @@ HOLDING = 2.0
 """Time after which it holds the object, at rest [s]"""
 
 
-def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
+def bent(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
     """Write a new start: shape, heading and velocity at random, muscles at rest.
 
     The heading is uniform. The animal is bent sideways by couples that are three sine waves of random phase, under
@@ -53,7 +53,7 @@ def draw_start(rng: np.random.Generator, body: Body, state: State, i: int) -> No
     s = (np.cumsum(rod.rest_length) - 0.5 * rod.rest_length) / rod.rest_length.sum()
     waves = sum(b * np.sin((j + 1) * np.pi * s + p) for j, (b, p) in enumerate(zip(bends, phases, strict=True)))
     yields = (rod.radius.min() / rod.radius) ** 4
-    turned = np.cumsum(waves * yields * rod.rest_length) / body.senses.length
+    turned = np.cumsum(waves * yields * rod.rest_length) / body.sensors.length
     nodes, elements = body.nodes(0), body.elements(0)
     _turn(heading + turned - turned.mean(), rod.nodal_mass, state.x[i, :, nodes], state.Q[i, :, :, elements])
     state.v[i, 0, nodes], state.v[i, 2, nodes] = velocity
@@ -78,14 +78,14 @@ def with_object_on_the_arc(rng: np.random.Generator, body: Body, state: State, i
 
     The angle is uniform, drawn again where the object would stand in the animal.
     """
-    draw_start(rng, body, state, i)
+    bent(rng, body, state, i)
     while not _place(body, state, i, ARC, rng.uniform(0.0, 0.5 * np.pi)):
         pass
 
 
 def with_object_anywhere(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
     """Write a new start, with the object at 0.4 to 0.8 m from the head, in any direction; both are uniform."""
-    draw_start(rng, body, state, i)
+    bent(rng, body, state, i)
     while not _place(body, state, i, rng.uniform(*RING), rng.uniform(-np.pi, np.pi)):
         pass
 
@@ -95,24 +95,24 @@ def with_object_to_the_right(rng: np.random.Generator, body: Body, state: State,
 
     The start is drawn again where the object would stand in the animal.
     """
-    draw_start(rng, body, state, i)
+    bent(rng, body, state, i)
     while not _place(body, state, i, ARC, 0.5 * np.pi):
-        draw_start(rng, body, state, i)
+        bent(rng, body, state, i)
 
 
 def _place(body: Body, state: State, i: int, away: float, angle: float, clear: float = CLEAR) -> bool:
     """Put the first object at a distance from the head and an angle to the right [m, rad], if it is clear there."""
-    x, senses = state.x[i], body.senses
+    x, sensors = state.x[i], body.sensors
     forward = np.array(
         [
-            x[c, senses.front[0] : senses.front[1] + 1].mean() - x[c, senses.rear[0] : senses.rear[1] + 1].mean()
+            x[c, sensors.front[0] : sensors.front[1] + 1].mean() - x[c, sensors.rear[0] : sensors.rear[1] + 1].mean()
             for c in (0, 2)
         ]
     )
     forward /= np.linalg.norm(forward)
     cosine, sine = away * np.cos(angle), away * np.sin(angle)
     way = cosine * forward[0] - sine * forward[1], sine * forward[0] + cosine * forward[1]
-    place = x[[0, 2], senses.head] + way
+    place = x[[0, 2], sensors.head] + way
     if _clearance(body, x, place) <= clear:
         return False
     state.body_x[i, 0, [0, 2]] = place
@@ -130,7 +130,7 @@ def _clearance(body: Body, x: Array, place: Array) -> float:
 
 def with_object_nearby(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
     """Write a new start, with the object at 0.2 to 0.4 m from the head, in any direction; both are uniform."""
-    draw_start(rng, body, state, i)
+    bent(rng, body, state, i)
     while not _place(body, state, i, rng.uniform(*NEARBY), rng.uniform(-np.pi, np.pi)):
         pass
 
@@ -195,7 +195,7 @@ def holding(body: Body) -> tuple[State, Array]:
     return state, levels
 
 
-OBJECT_STARTS: dict[str, Callable[[np.random.Generator, Body, State, int], Array | None]] = {
+WITH_OBJECT: dict[str, Callable[[np.random.Generator, Body, State, int], Array | None]] = {
     "arc": with_object_on_the_arc,
     "anywhere": with_object_anywhere,
     "default": with_object_to_the_right,
