@@ -1,1 +1,1 @@
-"""Agents for the environments of elastica_gym: training with Stable-Baselines3, evaluation and baselines."""
+"""The commands, as modules: ``python -m agents.train`` is ``elastica-gym train``."""

@@ -1,47 +1,6 @@
 """Plot learning curves over seeds: ``python -m agents.plot_curves --env ID --runs runs/SnakeForward-v1/ppo-*``."""
 
-import dataclasses
-from pathlib import Path
-
-from elastica_gym.console.bad_input import BadInputError, choose_environment, make_folder, require_extra, run_command
-
-
-@dataclasses.dataclass
-class PlotArguments:
-    """Plot the mean over several runs of one environment, and the range between the lowest and the highest."""
-
-    env: str
-    """Environment id that all runs were trained on."""
-    runs: list[Path]
-    """Folders of the runs."""
-    out: Path = Path("learning_curves.png")
-    """PNG file to write."""
-
-
-def main() -> None:
-    """Run the command line."""
-    require_extra("train")
-    import tyro
-
-    arguments = tyro.cli(PlotArguments)
-    choose_environment(arguments.env)
-    from elastica_gym.files import write_atomically
-    from elastica_gym.rl import curves
-    from elastica_gym.rl.policies import read_config
-    from elastica_gym.rl.run_files import EVALUATIONS, METRICS
-
-    for run in arguments.runs:
-        if (trained_on := read_config(run)["env"]) != arguments.env:
-            raise BadInputError(f"The run {run} was trained on {trained_on}, not on {arguments.env}.")
-        if len(curves.curve_of(run).get("steps", ())) < 2:
-            raise BadInputError(
-                f"The run {run} has no curve yet: {METRICS} and {EVALUATIONS} in it have less than two rows."
-            )
-    make_folder(arguments.out.parent)
-    figure = curves.plot_runs(arguments.runs)
-    write_atomically(arguments.out, lambda path: curves.save(figure, path))
-    print(f"Wrote {arguments.out}")
-
+from elastica_gym.commands import run
 
 if __name__ == "__main__":
-    run_command(main)
+    run("plot_curves")

@@ -1,8 +1,18 @@
-"""Files that are whole or not there."""
+"""Files: those that ship with the package, and atomic writing."""
 
 import os
 from collections.abc import Callable
 from pathlib import Path
+
+
+def shipped(name: str) -> Path:
+    """Return the folder of files that ship with the package: ``configs``, ``pretrained`` or ``searched``.
+
+    A clone has them beside the package, a wheel inside of it.
+    """
+    package = Path(__file__).parent
+    in_clone = package.parent / {"configs": "configs"}.get(name, f"agents/{name}")
+    return in_clone if in_clone.is_dir() and (package.parent / "pyproject.toml").exists() else package / name
 
 
 def write_atomically(path: Path, write: Callable[[Path], object]) -> None:

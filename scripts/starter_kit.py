@@ -85,7 +85,7 @@ def main() -> None:
     """Run the command line."""
     import tyro
 
-    from agents.evaluate import spreads
+    from elastica_gym.commands.evaluate import spreads
     from elastica_gym.console.bad_input import check_bounds, choose, environment_ids
 
     arguments = tyro.cli(Arguments)

@@ -12,11 +12,11 @@ import numpy as np
 import yaml
 
 from ..console.bad_input import BadInputError, choose
-from ..files import write_atomically
+from ..files import shipped, write_atomically
 from .hyperparameters import load
 from .policies import Statistics, TrainedPolicy, load_model
 
-PRETRAINED = Path(__file__).parents[2] / "agents" / "pretrained"
+PRETRAINED = shipped("pretrained")
 LARGEST = 5_000_000
 """Bytes that all pretrained policies may take"""
 ONLY_FOR_TRAINING = ("_last_obs", "_last_original_obs", "_last_episode_starts", "ep_info_buffer", "ep_success_buffer")

@@ -112,15 +112,20 @@ def _write_gif(frames: np.ndarray, path: Path, seconds: float) -> None:
     pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=1000.0 * seconds, loop=0, optimize=True)
 
 
-def record(policy: "Policy", env_id: str, *, seed: int, folder: Path, env_kwargs: dict[str, Any]) -> Path | None:
+def record(policy: "Policy", env_id: str, *, seed: int, path: Path, env_kwargs: dict[str, Any]) -> Path | None:
     """Record the episode with `seed` for rerun; without rerun, say how to get it and return None."""
     if message := missing_extra("viz"):
         print(f"no recording: {message}")
         return None
     from ..viz import write_recording
 
-    path = folder / f"{env_id.rpartition('/')[2]}-seed{seed}.rrd"
+    make_folder(path.parent)
     policy.reset([seed])
     write_recording(run_shown(policy, env_id, seed=seed, env_kwargs=env_kwargs), path)
     print(f"recorded {path}")
     return path
+
+
+def recording_name(env_id: str, seed: int) -> str:
+    """Return the file name of the recording of an episode."""
+    return f"{env_id.rpartition('/')[2]}-seed{seed}.rrd"

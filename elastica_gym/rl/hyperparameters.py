@@ -9,9 +9,10 @@ from typing import Any
 import yaml
 
 from ..console.bad_input import BadInputError, choose
+from ..files import shipped
 from .allowed_values import ALLOWED, NORMALIZE, policy_allowed, read_mapping, read_value
 
-CONFIGS = Path(__file__).parents[2] / "configs"
+CONFIGS = shipped("configs")
 ALGORITHMS = ("ppo", "sac")
 OWN_KEYS = ("n_envs", "n_timesteps", "normalize", "env_kwargs")
 """Keys of rl_zoo3's format that are not arguments of the algorithm."""

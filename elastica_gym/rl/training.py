@@ -23,19 +23,20 @@ from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
 
 from ..console.bad_input import BadInputError
+from ..envs import task_of
 from ..files import write_atomically
 from ..progress import Bar
 from . import cards, curves, transfer
 from .checkpoints import checkpoint_folders, last_whole_checkpoint, write_checkpoint
 from .episodes import Episodes
 from .evaluation import evaluate
-from .films import record
+from .films import record, recording_name
 from .hyperparameters import algorithm_arguments, algorithm_class, normalize_arguments
 from .imitation import CRITIC_UPDATES, critic_alone, imitate
 from .policies import TrainedPolicy, load_model, load_normalization, load_run, use_one_thread
 from .run_files import BEST, EVALUATIONS, METRICS, Table, read_table
 from .seeds import training_seeds
-from .vec_env import BatchVecEnv, make_batch_vec_env, observation_names
+from .vec_env import BatchVecEnv, make_batch_vec_env
 
 SAC_STEPS_PER_ITERATION = 512
 """Environment steps that make an iteration of SAC, which updates its networks every few steps."""
@@ -162,7 +163,7 @@ class Training:
         now = self.adapter.batch.observation_names
         weights = {name: value for name, value in other.policy.state_dict().items() if name != "log_std"}
         try:
-            where = transfer.places(observation_names(env_id), now)
+            where = transfer.places(_observation_names(env_id), now)
             shapes = {name: value.shape for name, value in self.model.policy.state_dict().items()}
             weights = transfer.widened(weights, shapes, where)
             absent, unknown = self.model.policy.load_state_dict(weights, strict=False)
@@ -417,7 +418,8 @@ class Training:
         best = self.folder / BEST
         policy = load_run(best)[0] if best.exists() else self._policy()
         for i in range(self.config["recordings"]):
-            record(policy, self.config["env"], seed=seed + i, folder=folder, env_kwargs=env_kwargs)
+            path = folder / recording_name(self.config["env"], seed + i)
+            record(policy, self.config["env"], seed=seed + i, path=path, env_kwargs=env_kwargs)
 
     @property
     def last_checkpoint(self) -> Path | None:
@@ -457,6 +459,11 @@ ITERATIONS: dict[type, Callable[[Any, BaseCallback, Budget], None]] = {PPO: iter
 
 def _plain(value: Any) -> int | float:
     return value if isinstance(value, int) else float(value)
+
+
+def _observation_names(env_id: str) -> tuple[str, ...]:
+    task = task_of(env_id)
+    return task.layout(task.make_body()).names
 
 
 def _networks(start: str) -> tuple[Any, RunningMeanStd | None, str, str]:

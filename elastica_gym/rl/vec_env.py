@@ -174,9 +174,3 @@ def make_batch_vec_env(env_id: str, *, n_envs: int, n_threads: int = 2, **env_kw
         env_id, num_envs=n_envs, autoreset_mode=AutoresetMode.SAME_STEP, n_threads=n_threads, **env_kwargs
     )
     return BatchVecEnv(batch)
-
-
-def observation_names(env_id: str) -> tuple[str, ...]:
-    """Return what the numbers of an environment's observation are."""
-    batch: Any = gym.make_vec(env_id, num_envs=1).unwrapped
-    return batch.observation_names

@@ -23,6 +23,7 @@ It is written a column at a time, and opens with the layout that `_blueprint` de
 
 import importlib
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -106,21 +107,29 @@ def write_recording(rollout: Rollout, path: str | Path) -> Path:
     OSError
         If the file cannot be written: the folder is not writable or the disk full.
     """
-    rr = import_rerun()
-    stream = rr.RecordingStream(APPLICATION_ID)
+
+    def log(stream: "rr.RecordingStream") -> None:
+        stream.send_blueprint(_blueprint(rollout))
+        stream.send_recording_name(rollout.name)
+        _log_scene(stream, rollout)
+        _log_animal(stream, rollout)
+        _log_head(stream, rollout)
+        _log_objects(stream, rollout)
+        _log_series(stream, rollout)
+
+    return write_stream(log, Path(path))
+
+
+def write_stream(log: Callable[["rr.RecordingStream"], None], path: Path) -> Path:
+    """Write what ``log`` sends to a stream as a recording, whole or not at all."""
+    stream = import_rerun().RecordingStream(APPLICATION_ID)
     # rerun's own file sink reports a full disk in the log only, so the bytes go through memory
     memory = stream.binary_stream()
-    stream.send_blueprint(_blueprint(rollout))
-    stream.send_recording_name(rollout.name)
-    _log_scene(stream, rollout)
-    _log_animal(stream, rollout)
-    _log_head(stream, rollout)
-    _log_objects(stream, rollout)
-    _log_series(stream, rollout)
+    log(stream)
     data = memory.read()
     if not data:
         raise RuntimeError("rerun recorded nothing; is the environment variable RERUN set to off?")
-    return write_whole(Path(path), data)
+    return write_whole(path, data)
 
 
 def read_positions(path: str | Path) -> tuple[Array, Array]:

@@ -159,7 +159,7 @@ def test_unknown_policy():
 
 WITHOUT = """
 import importlib.metadata, runpy, sys
-gone = {"cma", "matplotlib", "rich", "stable_baselines3", "torch", "tyro", "yaml"}
+gone = {"cma", "matplotlib", "stable_baselines3", "torch"}
 class Gone:
     def find_spec(self, name, *_):
         if name.partition(".")[0] in gone:

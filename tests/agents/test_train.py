@@ -10,7 +10,7 @@ from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
 
-from agents.train import TrainArguments, _started
+from elastica_gym.commands.train import TrainArguments, _started
 from elastica_gym.rl import hyperparameters, training, transfer
 from elastica_gym.rl.cards import command_of, load_pretrained, read_card
 from elastica_gym.rl.policies import load_run

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from agents.train import TrainArguments, _started
+from elastica_gym.commands.train import TrainArguments, _started
 from elastica_gym.rl.seeds import RUNS, SCORED, TEST, TRAINED, VALIDATION, target_seeds, training_seeds
 from elastica_gym.rl.training import Training
 

@@ -1,19 +1,17 @@
 """The policy file that fetches the object by script, from observations alone."""
 
-from pathlib import Path
-
 import gymnasium
 import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
-import agents
 from elastica_gym.envs.handling import Handling
 from elastica_gym.envs.tasks.octopus_fetch import observe_goal
+from elastica_gym.files import shipped
 from elastica_gym.rl.policy_file import FilePolicy
 from elastica_gym.scripted import octopus_fetch as octopus_script
 
-POLICY = Path(agents.__file__).parent / "pretrained" / "octopus_fetch_script.py"
+POLICY = shipped("pretrained") / "octopus_fetch_script.py"
 FETCH = "elastica_gym/OctopusFetch-v1"
 
 

@@ -79,8 +79,7 @@ def test_web_serves_this_machine_only_until_interrupted(recording):
 
 STARTING = """
 import os, signal, subprocess, sys
-sys.path.insert(0, {scripts!r})
-import replay
+from elastica_gym.commands import replay
 
 class Interrupted(subprocess.Popen):
     def _execute_child(self, *args):
@@ -90,14 +89,15 @@ class Interrupted(subprocess.Popen):
             os.kill(os.getpid(), signal.SIGINT)
 
 subprocess.Popen = Interrupted
-sys.exit(replay.main([{recording!r}, "--web", "--port", "{page}", "--data-port", "{data}"]))
+sys.argv = ["replay", {recording!r}, "--web", "--port", "{page}", "--data-port", "{data}"]
+replay.main()
 """
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 def test_an_interrupt_while_the_viewer_starts_leaves_no_process_behind(recording):
     """At the worst moment: when it runs, but the script does not know of it yet."""
-    code = STARTING.format(scripts=str(SCRIPT.parent), recording=str(recording), page=free_port(), data=free_port())
+    code = STARTING.format(recording=str(recording), page=free_port(), data=free_port())
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     viewer = int(re.search(r"viewer (\d+)", done.stdout)[1])
@@ -117,7 +117,7 @@ def test_bad_files(recording, tmp_path):
         (cut, "is damaged or cut short"),
     ):
         done = replay(path)
-        assert done.returncode == 1
+        assert done.returncode == 2
         assert message in done.stderr
         assert str(path) in done.stderr
         assert "Traceback" not in done.stderr
@@ -129,12 +129,12 @@ def test_a_port_in_use(recording):
         taken.listen()
         port = taken.getsockname()[1]
         done = replay(recording, "--web", "--port", port)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert f"--port {port} cannot be used" in done.stderr
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems have a display")
 def test_without_a_display_it_points_to_the_browser(recording):
     done = replay(recording)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "--web" in done.stderr

@@ -1,0 +1,149 @@
+"""Evaluate a policy: ``python -m agents.evaluate --run DIR``, ``--pretrained NAME`` or ``--policy NAME --env ID``."""
+
+import dataclasses
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..console.bad_input import (
+    BadInputError,
+    choose,
+    choose_environment,
+    make_folder,
+    require_extra,
+)
+from ..rl.evaluation import Evaluation, evaluate, print_table
+from ..rl.films import record, recording_name
+from ..rl.seeds import TEST
+from . import parse
+
+if TYPE_CHECKING:
+    from ..rl.policy_sources import Source
+
+
+@dataclasses.dataclass
+class EvaluateArguments:
+    """Evaluate a trained run, a pretrained policy or a baseline on episodes with the seeds seed, seed + 1, ..."""
+
+    run: Path | None = None
+    """Folder of a run of agents.train."""
+    pretrained: str | None = None
+    """Instead of a run: the name of a policy in agents/pretrained."""
+    policy: str | None = None
+    """Instead of a run: zero, random, scripted, seed_gait, the gait.yml that agents.search wrote, or a Python file with
+    a function policy(observation), as scripts/score.py takes it."""
+    env: str | None = None
+    """Environment id, before which may stand the module that registers it, as in my_module:my_lab/SnakeTurn-v0; by
+    default the one that the policy was trained or searched on."""
+    spread: str | None = None
+    """How starts are drawn, for tasks that know several: of OctopusReach arc, anywhere or default."""
+    episodes: int = 50
+    """How many episodes."""
+    seed: int = TEST.start
+    """Seed of the first episode; by default one that nothing is trained or chosen with (`elastica_gym.rl.seeds`)."""
+    record: Path | None = None
+    """Folder for a rerun recording of the first episode."""
+    video: Path | None = None
+    """File for a film of the first episode, which ends in .mp4 or .gif."""
+    json: Path | None = None
+    """File for the numbers as JSON: means, each episode, and what they were computed with."""
+    threads: int = 2
+    """Threads for the physics."""
+
+
+def main() -> None:
+    """Run the command line."""
+    require_extra("train")
+
+    arguments = parse(
+        "evaluate",
+        EvaluateArguments,
+        "--pretrained snake_reach_ppo --episodes 100",
+        "--policy scripted --env elastica_gym/OctopusGrab-v1 --video grab.mp4",
+        "--run runs/SnakeForward-v1/RUN --json numbers.json",
+    )
+    from ..progress import Bar
+
+    if arguments.video is not None:
+        from ..rl.films import SIZE, check_film
+
+        check_film(arguments.video, SIZE)
+    for folder in (arguments.record, arguments.json and arguments.json.parent):
+        if folder is not None:
+            make_folder(folder)
+    with Bar(f"evaluating {arguments.episodes} episodes") as bar:
+        policy, env_id, env_kwargs = _source(arguments)
+        if arguments.spread is not None:
+            env_kwargs = {**env_kwargs, "spread": choose("spread", arguments.spread, spreads(env_id))}
+        result = evaluate(
+            policy,
+            env_id,
+            episodes=arguments.episodes,
+            seed=arguments.seed,
+            n_threads=arguments.threads,
+            env_kwargs=env_kwargs,
+            show=bar.show,
+        )
+    name = arguments.policy or arguments.pretrained or str(arguments.run)
+    print_table(f"{name} on {env_id}, {arguments.episodes} episodes from seed {arguments.seed}", result)
+    if arguments.json is not None:
+        write_json(arguments.json, arguments, result, policy=name, env=env_id, env_kwargs=env_kwargs)
+    if arguments.record is not None:
+        path = arguments.record / recording_name(env_id, arguments.seed)
+        record(policy, env_id, seed=arguments.seed, path=path, env_kwargs=env_kwargs)
+    if arguments.video is not None:
+        from ..rl.films import film
+
+        film(policy, env_id, arguments.video, seed=arguments.seed, env_kwargs=env_kwargs)
+
+
+def write_json(path: Path, arguments: EvaluateArguments, result: Evaluation, **what: Any) -> None:
+    """Write means, what each episode came to, the arguments, and the machine and versions; say where that is."""
+    from ..rl import machine
+
+    given = {key: str(value) if isinstance(value, Path) else value for key, value in vars(arguments).items()}
+    everything = {
+        **what,
+        **result.summary(),
+        "per_episode": result.per_episode(),
+        "arguments": given,
+        **machine.describe(),
+    }
+    path.write_text(json.dumps(_without_nan(everything), indent=2, allow_nan=False) + "\n")
+    print(f"wrote {path}")
+
+
+def _without_nan(value: Any) -> Any:
+    """Return what is written as JSON, which has no NaN, with null for each."""
+    if isinstance(value, dict):
+        return {key: _without_nan(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_without_nan(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _source(arguments: EvaluateArguments) -> "Source":
+    if sum(given is not None for given in (arguments.run, arguments.pretrained, arguments.policy)) != 1:
+        raise BadInputError("Give either --run DIR, --pretrained NAME or --policy zero|random|scripted|seed_gait|FILE.")
+    if arguments.env is not None:
+        from ..rl.policies import BASELINES
+
+        # a baseline does not look at observations, so it takes them in any form
+        choose_environment(arguments.env, goals=arguments.policy in BASELINES)
+    # torch takes seconds to import: not before the arguments are known to be good
+    from ..rl import policy_sources
+
+    if arguments.policy is not None:
+        return policy_sources.from_name(arguments.policy, arguments.env)
+    if arguments.pretrained is not None:
+        return policy_sources.from_pretrained(arguments.pretrained, arguments.env)
+    assert arguments.run is not None
+    return policy_sources.from_run(arguments.run, arguments.env)
+
+
+def spreads(env_id: str) -> tuple[str, ...]:
+    """Return the ways in which an environment can draw its starts."""
+    from ..envs import task_of
+
+    return tuple(task_of(env_id).initial_states)

@@ -1,0 +1,138 @@
+"""Open a recording of an episode in the rerun viewer."""
+
+import dataclasses
+import importlib.util
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import urllib.parse
+from pathlib import Path
+
+import tyro
+
+from ..console.bad_input import BadInputError
+from . import invocation, parse
+
+LOOPBACK = "127.0.0.1"
+MAGIC = b"RRF"
+ENVIRONMENT = {"RUST_LOG": "warn", "RERUN_APP_ONLY": "true", "NO_COLOR": "1", **os.environ}
+
+
+@dataclasses.dataclass
+class ReplayArguments:
+    """Open a recording of an episode in the rerun viewer: in a window, or with --web in a browser on this machine."""
+
+    file: tyro.conf.Positional[Path]
+    """A recording that ends in .rrd."""
+    web: bool = False
+    """Serve it to browsers on this machine, and to no other: both ports are bound to 127.0.0.1."""
+    port: int = 9090
+    """Port of the web page."""
+    data_port: int = 9876
+    """Port of its data."""
+
+
+def main() -> None:
+    """Run the command line until the viewer is closed or Ctrl-C."""
+    arguments = parse("replay", ReplayArguments, "SnakeForward-v1-seed0.rrd", "SnakeForward-v1-seed0.rrd --web")
+    check_recording(arguments.file)
+    if arguments.web:
+        status = serve(arguments.file, page=arguments.port, data=arguments.data_port)
+    else:
+        status = open_window(arguments.file, arguments.data_port)
+    raise SystemExit(status)
+
+
+def check_recording(path: Path) -> None:
+    """Raise a BadInputError unless there is a whole recording at the path and rerun to open it with."""
+    if not path.exists():
+        raise BadInputError(f"there is no file {path}")
+    if not path.is_file():
+        raise BadInputError(f"{path} is not a file; give a recording in it, which ends in .rrd")
+    try:
+        with path.open("rb") as file:
+            begin = file.read(len(MAGIC))
+    except OSError as error:
+        raise BadInputError(f"cannot read {path}: {error.strerror}") from error
+    if begin != MAGIC:
+        raise BadInputError(f"{path} is not a rerun recording")
+    # in a process of its own, since some damage makes the reader abort
+    command = [*viewer_program(), "rrd", "verify", str(path)]
+    verdict = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True)
+    if verdict.returncode != 0:
+        reasons = [line for line in verdict.stderr.splitlines() if line.strip()] or ["rerun cannot read it"]
+        raise BadInputError(f"{path} is damaged or cut short: {reasons[0]}")
+
+
+def open_window(path: Path, port: int) -> int:
+    """Open the recording in a window, or in a viewer that is already open; return when it is closed."""
+    if not has_display():
+        raise BadInputError(f"there is no display to open a window on; try: {invocation('replay')} {path} --web")
+    print(f"opening {path} in a window; the command ends when that is closed", flush=True)
+    return run_viewer([str(path), "--bind", LOOPBACK, "--port", str(port)])
+
+
+def serve(path: Path, *, page: int, data: int) -> int:
+    """Serve the recording to browsers on this machine until Ctrl-C."""
+    for name, port in (("--port", page), ("--data-port", data)):
+        require_free(name, port)
+    source = urllib.parse.quote(f"rerun+http://{LOOPBACK}:{data}/proxy", safe="")
+    print(f"Open http://{LOOPBACK}:{page}/?url={source}", flush=True)
+    print(f"From another machine, first: ssh -L {page}:{LOOPBACK}:{page} -L {data}:{LOOPBACK}:{data} <this machine>")
+    print("Ctrl-C stops.", flush=True)
+    ports = ["--port", str(data), "--web-viewer-port", str(page)]
+    return run_viewer([str(path), "--serve-web", "--bind", LOOPBACK, *ports])
+
+
+def has_display() -> bool:
+    """Return whether there is a display to open a window on."""
+    if not sys.platform.startswith("linux"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def require_free(name: str, port: int) -> None:
+    """Raise a BadInputError if a port cannot be used."""
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((LOOPBACK, port))
+        except (OSError, OverflowError) as error:
+            raise BadInputError(f"{name} {port} cannot be used ({error}); choose another") from error
+
+
+def run_viewer(arguments: list[str]) -> int:
+    """Run rerun's program until it ends, or Ctrl-C or another signal ends it.
+
+    From before it starts, signals only set a flag: an exception could arise while the viewer is being started, and
+    leave it behind.
+    """
+    interrupted = threading.Event()
+    for name in {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal)):
+        signal.signal(getattr(signal, name), lambda *_: interrupted.set())
+    # a session of its own: Ctrl-C reaches this script only, which then stops the viewer
+    viewer = subprocess.Popen([*viewer_program(), *arguments], env=ENVIRONMENT, start_new_session=True)
+    while viewer.poll() is None and not interrupted.wait(timeout=0.2):
+        pass
+    if not interrupted.is_set():
+        return viewer.returncode
+    viewer.terminate()
+    try:
+        viewer.wait(timeout=5)
+    except subprocess.TimeoutExpired:
+        viewer.kill()
+        viewer.wait()
+    print("\nstopped", flush=True)
+    return 0
+
+
+def viewer_program() -> list[str]:
+    """Return the command that runs rerun's program, of the rerun that this Python has."""
+    spec = importlib.util.find_spec("rerun_cli")
+    if spec is None or spec.origin is None:
+        raise BadInputError("recordings need rerun: pip install 'elastica-gym[viz]'")
+    program = Path(spec.origin).with_name("rerun.exe" if sys.platform == "win32" else "rerun")
+    return [str(program)] if program.is_file() else [sys.executable, "-m", "rerun_cli"]

@@ -1,0 +1,196 @@
+"""Train an agent: ``python -m agents.train --env elastica_gym/SnakeForward-v1 --algo ppo``."""
+
+import dataclasses
+import time
+from pathlib import Path
+from typing import Any
+
+from ..console.bad_input import (
+    BadInputError,
+    check_bounds,
+    choose_environment,
+    fail,
+    make_folder,
+    require_extra,
+)
+from ..rl.run_files import BEST
+from ..rl.seeds import RUNS, VALIDATION, check_seeds
+from . import invocation, parse
+
+
+@dataclasses.dataclass
+class TrainArguments:
+    """Train an agent with Stable-Baselines3.
+
+    Hyperparameters come from configs/<algo>.yml. What the run leaves behind is in runs/<id>/<algo>-<seed>-<time>/.
+    """
+
+    env: str = "elastica_gym/SnakeForward-v1"
+    """Environment id, before which may stand the module that registers it, as in my_module:my_lab/SnakeTurn-v0."""
+    algo: str = "ppo"
+    """Algorithm: ppo or sac."""
+    seed: int = 0
+    """Seed of networks and exploration, below 2**32; the environments' seeds are derived from it (`rl.seeds`)."""
+    steps: int | None = None
+    """Environment steps to train for; by default n_timesteps of the configuration, or no limit if minutes are given."""
+    minutes: float | None = None
+    """Wall-clock budget of training and its evaluations; schedules follow the part of it that is left."""
+    n_envs: int | None = None
+    """Environments in the batch, instead of the configuration's."""
+    set: list[str] = dataclasses.field(default_factory=list)
+    """Hyperparameters to go before the configuration's, as KEY=VALUE, such as learning_rate=0.0005 gamma=0.99."""
+    config: Path | None = None
+    """Another configuration file of the same format."""
+    start_from: str | None = None
+    """Folder of a run, or name of a pretrained policy, of the same algorithm to begin with its networks, as of an
+    easier task of the same animal."""
+    imitate: int = 0
+    """Environment steps in which the networks first learn to do as the task's scripted policy does; not counted in
+    `steps`, which may be 0, but in the minutes."""
+    threads: int = 2
+    """Threads for the physics; results do not depend on them."""
+    evaluations: int = 10
+    """Evaluation points besides the one at the start, spread evenly over the budget; 0 for none at all."""
+    evaluation_episodes: int = 20
+    """Episodes of each evaluation."""
+    evaluation_seed: int = VALIDATION.start
+    """Seed of an evaluation's first episode, not one of those to train or to test with (`elastica_gym.rl.seeds`)."""
+    recordings: int = 1
+    """Evaluation episodes recorded for rerun at the end."""
+    checkpoint_minutes: float = 1.0
+    """Time between checkpoints; 0 writes one after every update."""
+    out: Path = Path("runs")
+    """Folder of all runs."""
+    folder: Path | None = None
+    """Folder of this run, instead of one in `out` named by id, algorithm, seed and time."""
+    resume: Path | None = None
+    """Folder of a run to continue from its last whole checkpoint; of the other options only steps and minutes count."""
+
+
+def main() -> None:
+    """Run the command line."""
+    require_extra("train")
+
+    arguments = parse(
+        "train",
+        TrainArguments,
+        "--env elastica_gym/SnakeForward-v1 --minutes 5",
+        "--env elastica_gym/SnakeReach-v1 --start-from snake_forward_ppo --steps 700000",
+        "--env elastica_gym/OctopusGrab-v1 --imitate 128000 --steps 0",
+        "--resume runs/SnakeForward-v1/RUN",
+    )
+    from ..progress import Bar
+
+    with Bar("starting"):
+        folder, config = _resumed(arguments) if arguments.resume else _started(arguments)
+        # torch takes seconds to import: not before the arguments are known to be good
+        import yaml
+
+        from ..files import write_atomically
+        from ..rl.training import Training
+
+        training = Training(folder, config, resume=arguments.resume is not None)
+    # what the environment or the algorithm refuses does not get this far, and leaves the folder free
+    text = yaml.safe_dump(config, sort_keys=False)
+    write_atomically(folder / "config.yml", lambda path: path.write_text(text))
+    print(f"Training {config['algo']} on {config['env']}, seed {config['seed']}, into {folder}")
+    try:
+        finished = training.run()
+    except (OSError, KeyboardInterrupt) as error:
+        what = (
+            "interrupted" if isinstance(error, KeyboardInterrupt) else f"{error.strerror}: {error.filename or folder}"
+        )
+        kept = training.last_checkpoint
+        hint = f". The checkpoint {kept} is whole; continue with: {_resume_command(folder)}" if kept else ""
+        fail(what + hint, status=130 if what == "interrupted" else 1)
+    if not finished:
+        print(f"Saved. Continue with: {_resume_command(folder)}")
+        raise SystemExit(130)
+    print(f"Finished. Model, metrics.csv, learning_curve.png and recordings are in {folder}")
+    if (folder / BEST).exists():
+        print(f"The model that evaluated best on the way is in {folder / BEST}")
+    print(f"Evaluate it with: {invocation('evaluate')} --run {folder}")
+
+
+def _resume_command(folder: Path) -> str:
+    return f"{invocation('train')} --resume {folder}"
+
+
+def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
+    """Check the arguments of a new run and make its folder; return that and what goes into its config.yml."""
+    from ..rl import hyperparameters, machine
+
+    choose_environment(arguments.env)
+    overrides = hyperparameters.parse_overrides(arguments.set)
+    if arguments.n_envs is not None:
+        overrides["n_envs"] = arguments.n_envs
+    values = hyperparameters.load(arguments.algo, arguments.env, config=arguments.config, overrides=overrides)
+    config = {
+        **{key: value for key, value in dataclasses.asdict(arguments).items() if key not in _NOT_IN_CONFIG},
+        "start_from": _start(arguments.start_from),
+        "config": arguments.config and str(arguments.config),
+        "steps": hyperparameters.timesteps(values) if arguments.steps is arguments.minutes is None else arguments.steps,
+        "hyperparameters": values,
+        **machine.describe(),
+    }
+    _check(config)
+    folder = arguments.folder or _new_folder(arguments)
+    if (folder / "config.yml").exists():
+        raise BadInputError(f"The folder {folder} has a run already: use another, or {_resume_command(folder)}")
+    return make_folder(folder), config
+
+
+def _start(start: str | None) -> str | None:
+    """Return the name of a pretrained policy as it is, and the whole path of a run."""
+    from ..rl.cards import names
+
+    if start is None or start in names():
+        return start
+    if not Path(start).is_dir():
+        raise BadInputError(
+            f"--start-from {start} is neither the folder of a run nor a pretrained policy, "
+            f"of which there are: {', '.join(names())}"
+        )
+    return str(Path(start).resolve())
+
+
+_NOT_IN_CONFIG = {"set", "n_envs", "out", "folder", "resume"}
+
+
+def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
+    """Read the config.yml of a run, with the budget that the arguments may extend."""
+    from ..rl import hyperparameters
+    from ..rl.policies import read_config
+
+    assert arguments.resume is not None
+    config = read_config(arguments.resume)
+    # a file, which may have been edited
+    config["hyperparameters"] = hyperparameters.checked(config["algo"], config["hyperparameters"])
+    if arguments.steps is not None or arguments.minutes is not None:
+        config |= {"steps": arguments.steps, "minutes": arguments.minutes}
+    _check(config)
+    return make_folder(arguments.resume), config
+
+
+def _check(config: dict[str, Any]) -> None:
+    choose_environment(config["env"])
+    lowest = {
+        "steps": 0 if config.get("imitate") else 1,
+        "minutes": 0.001,
+        "imitate": 0,
+        "threads": 1,
+        "evaluations": 0,
+        "evaluation_episodes": 1,
+        "recordings": 0,
+        "checkpoint_minutes": 0.0,
+    }
+    check_bounds(config, lowest)
+    if config.get("imitate") and config["algo"] != "ppo":
+        raise BadInputError(f"imitate must be 0 for {config['algo']}, got {config['imitate']}: only ppo can imitate")
+    check_seeds("seed", config["seed"], 1, RUNS)
+    check_seeds("evaluation_seed", config["evaluation_seed"], config["evaluation_episodes"], VALIDATION)
+
+
+def _new_folder(arguments: TrainArguments) -> Path:
+    name = f"{arguments.algo}-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
+    return arguments.out / arguments.env.rpartition("/")[2] / name
