@@ -1,7 +1,7 @@
-"""The physics of Cosserat rods on arrays, which knows neither PyElastica nor reinforcement learning.
+"""The physics of Cosserat rods on arrays, independent of PyElastica and of reinforcement learning.
 
 `Rod`, `Plane`, `Cylinder`, `Contact`, `Joint` and `Wave` describe rods and what acts on them. `build_model` lays them
-out in a `Model`, `at_rest` gives a batch of states, and `advance` steps it.
+out in a `Model`, `at_rest` creates a batch of states, and `advance` steps it.
 """
 
 from .builder import at_rest, build_model

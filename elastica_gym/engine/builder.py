@@ -1,4 +1,4 @@
-"""From a description of rods and surroundings to a Model, and a State at rest."""
+"""Build a Model from a description of rods and surroundings, and a State at rest."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -48,7 +48,7 @@ def build_model(
 
     Parameters
     ----------
-    rods : sequence of Rod, or of what has its attributes
+    rods : sequence of Rod, or of objects with its attributes
         At least one.
     planes : sequence of Plane
         Touched by all rods.
@@ -64,20 +64,20 @@ def build_model(
         Whether ``Control.couple`` acts.
     is_balanced : bool
         Whether the couples that a joint exerts on its two elements are exactly opposite, which conserves angular
-        momentum. By default they are as documented (Gazzola et al. 2018, eq. 2.21) and PyElastica has them: in three
-        dimensions opposite but for the third order of the joint's angle.
+        momentum. By default they are as documented (Gazzola et al. 2018, eq. 2.21) and in PyElastica: in three
+        dimensions, opposite except for terms of third order in the joint's angle.
     is_reciprocal : bool
-        Whether the loads of strains derive from a potential, which keeps the energy of rods that bend strongly. By
+        Whether the internal loads derive from a potential, which conserves the energy of strongly bent rods. By
         default they are as documented, without the tension of `ReciprocalTension`.
     cylinders : sequence of Cylinder
         Touched by all rods and planes, not by each other.
     rod_contact : Contact, optional
-        How elements of two rods touch, and those of one that are far enough from each other along
-        it; without, rods pass through rods.
+        Contact between elements of two rods, or of one rod if they are far enough apart along it;
+        if omitted, rods pass through each other.
     joints : sequence of Joint
         Between the ends of rods.
     clamped : sequence of int
-        Numbers of the rods whose first node and first element are held as they are.
+        Numbers of the rods whose first node and first element are held in place.
 
     Raises
     ------
@@ -92,8 +92,8 @@ def build_model(
     first = LEAD + np.concatenate([[0], np.cumsum(counts + 1)[:-1]])
     occupied = int(np.sum(counts + 1))
     blocks = -(-(LEAD + occupied) // BLOCK) + 1
-    # with an odd number of blocks to a row, the rows that a stage works on at a time lie in different
-    # sets of the cache and at different offsets in their pages, which the processor would mistake for equal
+    # an odd number of blocks per row puts the rows of a stage into different cache sets and at different
+    # page offsets; at equal offsets, the processor would mistake their addresses for equal
     slots = BLOCK * (blocks | 1)
     fields: dict[str, Any] = {name: aligned_zeros((slots,)) for name in _SCALAR}
     fields |= {name: aligned_zeros((rows, slots)) for name, rows in _ROWS.items()}
@@ -102,7 +102,7 @@ def build_model(
         lay_out(fields, rod, int(start))
     for number in clamped:
         start = int(first[_rod_number("clamped", number, rods)])
-        # what has no inverse mass and inertia is not moved by any load
+        # with zero inverse mass and inertia, no load moves them
         fields["inv_mass"][start] = 0.0
         fields["inv_inertia"][:, start] = 0.0
     return Model(
@@ -168,7 +168,7 @@ def lay_out(fields: Mapping[str, Array], rod: Continuum, start: int) -> None:
 
 
 def inverse(a: Array) -> Array:
-    """Return 1/a, and 0 where a is 0: at ghosts, and at joints that bend freely."""
+    """Return 1/a, or 0 where a is 0: at ghosts, and at joints that bend freely."""
     return np.divide(1.0, a, out=np.zeros_like(a), where=a > 0.0)
 
 
@@ -284,9 +284,9 @@ def _rod_contact(contact: Contact | None, rods: Sequence[Continuum], first: np.n
 
 
 def _last_clear(rod: Continuum) -> Index:
-    """Return the last element before each at and before which none is too near to touch it, -1 for none, (n,).
+    """Return the last element before each that is far enough along the rod to touch it, -1 for none, (n,).
 
-    Too near is what is nearer along the rod than half a turn about the surface of a rod of their mean radius.
+    Far enough is `NEAR` of half the circumference at the elements' mean radius.
     """
     s = np.cumsum(rod.rest_length) - 0.5 * rod.rest_length
     near = s[:, None] - s < NEAR * np.pi * 0.5 * (rod.radius[:, None] + rod.radius)
@@ -297,15 +297,15 @@ def _last_clear(rod: Continuum) -> Index:
 def at_rest(
     model: Model, rods: Sequence[Continuum], n_envs: int = 1, *, cylinders: Sequence[Cylinder] = ()
 ) -> tuple[State, Control]:
-    """Allocate State and Control, with every rod and cylinder where it was described, at rest, in all environments.
+    """Allocate State and Control, with every rod and cylinder at rest as described, in all environments.
 
     Raises
     ------
     ValueError
-        If the model has another number of cylinders.
+        If the model has a different number of cylinders.
     """
     if len(cylinders) != model.cylinders.mass.size:
-        raise ValueError(f"cylinders must be the {model.cylinders.mass.size} of the model, not {len(cylinders)}")
+        raise ValueError(f"cylinders must be {model.cylinders.mass.size}, as in the model, not {len(cylinders)}")
     state, control = make_state(model, n_envs), make_control(model, n_envs)
     for rod, start in zip(rods, model.first_slot, strict=True):
         n = rod.n_elements

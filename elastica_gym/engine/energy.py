@@ -1,8 +1,8 @@
-"""Where energy comes from and where it goes: the work of each kind of load, step by step.
+"""The energy budget: the work of each kind of load, step by step.
 
 A kick changes the kinetic energy by dt F . (v + v')/2 + dt T . (w + w')/2, with v and v' the velocities before and
-after it, to rounding. So the net load of a step, taken apart by kind, gives the work of each kind. It is taken apart
-by taking the step again without the kinds, one after another: each is what a step with it has more than one without.
+after it, to rounding. So the net load of a step, split by kind, gives the work of each kind. To split it, the step is
+repeated with one kind after another removed: each load is the difference between a step with it and one without.
 """
 
 from collections.abc import Callable, Iterator
@@ -27,15 +27,15 @@ class Energy(NamedTuple):
     rotational: Array
     """sum w.J w/(2 e)"""
     shear: Array
-    """sum (sigma - sigma^).S (sigma - sigma^) l^/2, over e where the loads of strains derive from a potential"""
+    """sum (sigma - sigma^).S (sigma - sigma^) l^/2, divided by e if the internal loads derive from a potential"""
     bending: Array
-    """sum (kappa - kappa^).B (kappa - kappa^) D^/2, over E^3 where the loads of strains derive from a potential"""
+    """sum (kappa - kappa^).B (kappa - kappa^) D^/2, divided by E^3 if the internal loads derive from a potential"""
     gravitational: Array
     """-sum m g.x"""
 
     @property
     def elastic(self) -> Array:
-        """Energy of strains [J], (B,)."""
+        """Elastic energy [J], (B,)."""
         return self.shear + self.bending
 
     @property
@@ -80,7 +80,7 @@ def energy(model: Model, state: State, control: Control) -> Energy:
 
 
 class Ledger:
-    """The work of each kind of load on a batch, while it advances; a `Team` of one thread, some ten times as slow.
+    """The work of each kind of load on a batch as it advances: a `Team` of one thread, about ten times slower.
 
     Parameters
     ----------
@@ -94,9 +94,9 @@ class Ledger:
         Work since the beginning by kind [J], (B,) each: ``muscles``; ``gravity``; ``damping`` of the rods; of contact
         among rods and between rods and cylinders ``contact friction``, ``contact damping`` and ``contact spring``; of
         planes, on rods and cylinders, ``ground friction``, ``ground damping``, ``ground spring`` and
-        ``ground reaction``, which cancels what pushes into them; ``internal``: of stress and of the transport of spin.
+        ``ground reaction``, which cancels forces into them; ``internal``: of stress and of the transport of spin.
     start : Energy
-        At the beginning.
+        Energy at the beginning.
     """
 
     def __init__(self, model: Model, state: State, control: Control) -> None:
@@ -137,26 +137,26 @@ class Ledger:
             self.work[name] += dt * (power - without)
             power = without
         self.work["internal"] += dt * power
-        # uniform damping is no load: it takes its part of the velocities after the kick
+        # uniform damping is not a load: it scales the velocities after the kick
         lost, e_inv = 0.5 * (1.0 - kept**-2), inverse(state.length * model.inv_rest_length)
         self.work["damping"] += np.einsum("k,bik->b", model.mass, lost * state.v**2)
         self.work["damping"] += np.einsum("ik,bik,bk->b", model.inertia, lost * state.w**2, e_inv)
 
     @property
     def imbalance(self) -> Array:
-        """Energy that the rods' own loads have made from nothing since the beginning [J], (B,).
+        """Energy created by the rods' internal loads since the beginning [J], (B,).
 
-        That is their work and by how much the energy of strains has grown: 0 for loads that derive from it.
+        It is their work plus the increase of elastic energy: 0 for loads that derive from that energy.
         """
         return self.work["internal"] + energy(self.model, self.state, self.control).elastic - self.start.elastic
 
 
-# what a step starts from; lists of pairs that may touch are checked against the positions
+# the fields a step starts from; neighbour lists are checked against the positions
 _MOVING = ("x", "v", "Q", "w", "couple", "time", "step", "body_x", "body_v", "body_Q", "body_w", "body_contact")
 
 
 def _without(model: Model) -> Iterator[tuple[str, Model]]:
-    """Yield each kind of load, and the model without it and all before it."""
+    """Yield each kind of load, with the model without it and all earlier ones."""
     planes, cylinders, contact = model.planes, model.cylinders, model.rod_contact
     planes, cylinders = _zeroed(planes, "_friction"), _zeroed(cylinders, "ground_friction")
     yield "ground friction", model._replace(planes=planes, cylinders=cylinders)
@@ -179,7 +179,7 @@ def _without(model: Model) -> Iterator[tuple[str, Model]]:
 
 
 def _zeroed(table: Table, ending: str) -> Table:
-    """Return a table with zeros in the columns whose names end like that."""
+    """Return a table with zeros in the columns whose names end with ``ending``."""
     return table._replace(**{n: np.zeros_like(getattr(table, n)) for n in table._fields if n.endswith(ending)})
 
 
@@ -190,7 +190,7 @@ def _power(state: State, velocities: list[Array]) -> Array:
 
 
 def _at(model: Model, state: State, control: Control) -> State:
-    """Return a copy of the State with length and curvature at its positions; a step leaves those of half a step ago."""
+    """Return a copy of the State with length and curvature at its positions; after a step they lag half a step."""
     copy = deepcopy(state)
     advance(model, copy, control, 0, state.time.size, 0.0, 1)
     return copy

@@ -1,11 +1,11 @@
-"""Model, State and Control: what stays, what a step changes, what an agent sets.
+"""Model, State and Control: constants, the simulated state, and inputs.
 
 All arrays are C-contiguous float64 unless said otherwise, in SI units. B is the number of
-environments. Rods stand one after another along the last axis, which has L slots: first an empty
-block (``LEAD``, for reading k - 1), then for a rod of n elements n + 1 slots. Its nodes use all of
+environments. Rods lie one after another along the last axis, which has L slots: first an empty
+block (``LEAD``, for reading k - 1), then n + 1 slots for a rod of n elements. Its nodes use all of
 them; its elements the first n and its Voronoi points (between elements k and k + 1) the first n - 1.
-What is left over, the *ghosts*, carries zero stiffness, zero mass and zero inverse mass, so that
-every stage runs over all slots without a branch and no rod feels its neighbour. The slots are padded
+The unused slots, the *ghosts*, have zero stiffness, zero mass and zero inverse mass, so that every
+stage runs over all slots without a branch and adjacent rods do not interact. The slots are padded
 to a multiple of ``BLOCK``, so that loops have no remainder and start at a cache line, and at least
 one empty block follows for reading k + 1.
 """
@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 BLOCK = 8
 LEAD = BLOCK
 SCRATCH = 16
-# pairs of elements that may touch, for each element, for which there is room
+# capacity of the neighbour list, in pairs per element
 ROOM = 32
-# of half a turn of a rod about its own surface: elements that are nearer than that cannot touch
+# elements of a rod closer than this fraction of pi r, half its circumference, cannot touch
 NEAR = 0.8
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ class Planes(NamedTuple):
     damping: Array
     """Damping force per normal velocity nu [N s/m], (P,)"""
     surface_tolerance: Array
-    """Gap below which an element is in contact: at most the first [m], and the second of its radius, (P, 2)"""
+    """Gap below which an element is in contact: the lesser of a length [m] and a fraction of its radius, (P, 2)"""
     slip_tolerance: Array
     """Slip velocity below which friction is static [m/s], (P,)"""
     kinetic_friction: Array
@@ -55,9 +55,9 @@ class Waves(NamedTuple):
     axis: Array
     """Direction of the couple in the lab, (W, 3)"""
     sine: Array
-    """What multiplies sin(omega t): the net couple on each element [N m], (W, L)"""
+    """Factor of sin(omega t) in the net couple on each element [N m], (W, L)"""
     cosine: Array
-    """What multiplies cos(omega t): the net couple on each element [N m], (W, L)"""
+    """Factor of cos(omega t) in the net couple on each element [N m], (W, L)"""
     angular_frequency: Array
     """omega [rad/s], (W,)"""
     ramp_time: Array
@@ -88,14 +88,14 @@ class Cylinders(NamedTuple):
     rod_friction: Array
     """Coefficient of Coulomb friction with rods, (C,)"""
     rod_slip_damping: Array
-    """Force of friction per slip below the Coulomb bound c [N s/m], (C,)"""
+    """Friction force per slip velocity below the Coulomb bound c [N s/m], (C,)"""
 
 
 class RodContact(NamedTuple):
-    """How elements of rods touch each other."""
+    """Contact between elements of rods."""
 
     is_on: bool
-    """Whether they do"""
+    """Whether rods touch each other"""
     stiffness: float
     """Restoring force per overlap k [N/m]"""
     damping: float
@@ -103,13 +103,13 @@ class RodContact(NamedTuple):
     friction: float
     """Coefficient of Coulomb friction mu"""
     slip_damping: float
-    """Force of friction per slip below the Coulomb bound c [N s/m]"""
+    """Friction force per slip velocity below the Coulomb bound c [N s/m]"""
     stray: float
-    """How far an element may move before pairs that may touch are listed anew [m]"""
+    """How far an element may move before the neighbour list is rebuilt [m]"""
     last_other: Array
-    """The last slot before the rod that a slot belongs to, a whole number, (L,)"""
+    """The last slot before the rod that a slot belongs to, integer-valued, (L,)"""
     last_clear: Array
-    """The last slot before an element at and before which none is too near to touch it, a whole number, (L,)"""
+    """The last slot before an element that is far enough along the rod to touch it, integer-valued, (L,)"""
 
 
 class Joints(NamedTuple):
@@ -136,7 +136,7 @@ class Joints(NamedTuple):
 
 
 class Model(NamedTuple):
-    """What does not change during an episode."""
+    """Everything that is constant during an episode."""
 
     first_slot: Index
     """Slot of each rod's first node, (R,) int64"""
@@ -153,7 +153,7 @@ class Model(NamedTuple):
     volume_root: Array
     """Square root of element volume over pi, r sqrt(l) [m^(3/2)], (L,)"""
     contact_radius: Array
-    """Radius of each element to what it touches, that at rest [m], (L,)"""
+    """Radius of each element in contact, its rest radius [m], (L,)"""
     shear: Array
     """Diagonal of the shear and stretch stiffness S [N], (3, L)"""
     bend: Array
@@ -169,7 +169,7 @@ class Model(NamedTuple):
     inv_inertia: Array
     """Diagonal of its inverse [1/(kg m^2)], zero at ghosts, (3, L)"""
     share: Array
-    """Parts of an element's force that are its left and right node's: 1/2, at rod ends 1; (2, L)"""
+    """Shares of the left and right node's force in an element's: 1/2, at rod ends 1; (2, L)"""
     weight: Array
     """Weights of the left and right node's velocity in an element's, by mass, (2, L)"""
     viscosity: Array
@@ -184,11 +184,11 @@ class Model(NamedTuple):
     is_muscular: bool
     """Whether the muscle couples of Control act"""
     is_viscous: bool
-    """Whether any viscosity is not zero"""
+    """Whether any viscosity is nonzero"""
     is_balanced: bool
     """Whether the two couples of a joint are exactly opposite in the lab, which conserves angular momentum"""
     is_reciprocal: bool
-    """Whether the loads of strains derive from a potential, by a tension that the documented model leaves out"""
+    """Whether the internal loads derive from a potential, through a tension that the documented model omits"""
     activation_time: float
     """Time constant of muscle activation, 0 for immediate [s]"""
     planes: Planes
@@ -200,7 +200,7 @@ class Model(NamedTuple):
 
 
 class State(NamedTuple):
-    """What a step changes. The first seven fields and the bodies' motion and contact are the state proper."""
+    """All that a step changes. The first seven fields and the bodies' motion and contact are the state proper."""
 
     x: Array
     """Node position [m], lab frame, (B, 3, L)"""
@@ -227,9 +227,9 @@ class State(NamedTuple):
     torque: Array
     """Net torque on elements T + T_ext [N m], material frame, (B, 3, L)"""
     normal_force: Array
-    """Weight that the planes carry, by element, sum over planes [N], (B, L)"""
+    """Normal load on planes by element, summed over planes [N], (B, L)"""
     scratch: Array
-    """What the stages of a step hand on to each other, (B, SCRATCH, L)"""
+    """Intermediate results of the stages of a step, (B, SCRATCH, L)"""
     decay: Array
     """exp(-c dt) by node and element, (B, L)"""
     body_x: Array
@@ -245,27 +245,27 @@ class State(NamedTuple):
     body_torque: Array
     """Net torque on it about its centre [N m], material frame, (B, C, 3)"""
     body_contact: Array
-    """At each point that may touch a plane, with the last plane and in the lab: the normal force, the force of
-    friction [N] and the point from the centre [m], (B, C, 6, 7)"""
+    """At each point that may touch a plane, for the last plane and in the lab frame: normal force, friction force [N]
+    and the point relative to the centre [m], (B, C, 6, 7)"""
     body_touch: Array
-    """Normal force between an element and cylinders, where there are any [N], (B, L)"""
+    """Normal force between an element and cylinders, if any [N], (B, L)"""
     rod_touch: Array
-    """Normal force between an element and others, where rods touch [N], (B, L)"""
+    """Normal force between an element and other elements, if rods touch [N], (B, L)"""
     n_neighbours: Index
-    """How many pairs of elements may touch until one has strayed too far, -1 if they are not listed, (B,) int64"""
+    """Number of pairs of elements near enough to touch soon, -1 if they are not listed, (B,) int64"""
     neighbours: Index
-    """Those pairs, the lower slot times L plus the higher one, sorted, (B, P) int64"""
+    """The neighbour list of these pairs, the lower slot times L plus the higher one, sorted, (B, P) int64"""
     neighbour_x: Array
-    """Node positions when they were listed [m], (B, 3, L)"""
+    """Node positions when the list was built [m], (B, 3, L)"""
     neighbour_reach: Array
-    """Radii of the balls about elements when they were listed [m], (B, L)"""
+    """Radii of the elements' bounding spheres when the list was built [m], (B, L)"""
     order: Index
-    """Slots of the E elements that may touch others, in the order of a sweep: any order will do, the
-    right one is the fastest; (B, E) int64"""
+    """Slots of the E elements that may touch others, in the order of a sweep: any order is correct, the sorted one
+    is fastest; (B, E) int64"""
 
 
 class Control(NamedTuple):
-    """What is set from outside between calls of ``advance``."""
+    """Inputs, set between calls of ``advance``."""
 
     couple: Array
     """Muscle couple that ``State.couple`` approaches [N m], material frame, (B, 3, L)"""
@@ -280,7 +280,7 @@ class Control(NamedTuple):
 
 
 def aligned_zeros(shape: tuple[int, ...], dtype: type = np.float64) -> NDArray:
-    """Return zeros of 8-byte numbers whose first one starts a cache line (64 bytes)."""
+    """Return 8-byte zeros aligned to a cache line (64 bytes)."""
     size = 8 * int(np.prod(shape, dtype=np.int64))
     raw = np.zeros(size + 64, dtype=np.uint8)
     start = -raw.ctypes.data % 64
@@ -345,6 +345,6 @@ def _elements(model: Model) -> Index:
 
 
 def _assert_disjoint(arrays: State | Control) -> None:
-    """Assert what the stages promise the compiler: no two arrays overlap."""
+    """Assert that no two arrays overlap, as the stages promise the compiler."""
     spans = sorted((a.ctypes.data, a.ctypes.data + a.nbytes) for a in arrays if a.size)
     assert all(end <= start for (_, end), (start, _) in pairwise(spans))

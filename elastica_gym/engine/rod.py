@@ -14,7 +14,7 @@ SHEAR_CORRECTION = 27.0 / 28.0
 
 
 class Continuum(Protocol):
-    """What a Model needs to know of a rod. `Rod` describes each attribute."""
+    """The attributes of a rod that a Model needs, as described in `Rod`."""
 
     @property
     def n_elements(self) -> int: ...  # noqa: D102
@@ -84,7 +84,7 @@ class Rod:
     Raises
     ------
     ValueError
-        If an argument cannot be: names it, its value and what is allowed.
+        If an argument is invalid; names it, its value and what is allowed.
     """
 
     position: Array
@@ -103,7 +103,7 @@ class Rod:
         position = _array("position", self.position, (3, None))
         n = position.shape[1] - 1
         if n < 2:
-            raise ValueError(f"position has {n + 1} nodes, so the rod {max(n, 0)} elements; at least 2 are needed")
+            raise ValueError(f"position has {n + 1} nodes, so the rod has {max(n, 0)} elements; at least 2 are needed")
         checked = {
             "position": position,
             "directors": _array("directors", self.directors, (3, 3, n)),
@@ -165,10 +165,9 @@ class Rod:
 
     @classmethod
     def through(cls, position: ArrayLike, *, normal: ArrayLike, radius: ArrayLike, **material: Any) -> "Rod":
-        """Return a rod through given nodes, its d1 as near to ``normal`` as its tangents allow.
+        """Return a rod through given nodes, its d1 as close to ``normal`` as its tangents allow.
 
-        Its curvature at rest is zero unless passed as ``rest_kappa``: a kinked or curved rod
-        straightens unless told to be at rest.
+        Its rest curvature is zero unless passed as ``rest_kappa``; without it, a kinked or curved rod straightens.
 
         Raises
         ------
@@ -207,8 +206,8 @@ class Rod:
 
     @property
     def curvature(self) -> Array:
-        """Curvature and twist of the rod as described, which it keeps if it is its ``rest_kappa`` [1/m], (3, n - 1)."""
-        # imported here: it takes longer than all else that `import elastica_gym` does
+        """Curvature and twist of the rod as described; as ``rest_kappa``, it keeps the shape [1/m], (3, n - 1)."""
+        # imported here: it takes longer than the rest of `import elastica_gym`
         from scipy.spatial.transform import Rotation
 
         turns = np.einsum("ijk,ljk->kil", self.directors[..., 1:], self.directors[..., :-1])
@@ -245,7 +244,7 @@ class Rod:
 
     @property
     def inv_nodal_mass(self) -> Array:
-        """One over it [1/kg], (n + 1,)."""
+        """Inverse nodal mass [1/kg], (n + 1,)."""
         return 1.0 / self.nodal_mass
 
     @property
@@ -260,26 +259,26 @@ class Rod:
 
 
 class Limited(Protocol):
-    """A simulator, which knows its largest stable time step."""
+    """A simulator that reports its largest stable time step."""
 
     def stable_time_step(self) -> float: ...  # noqa: D102
 
 
 class Convertible(Protocol):
-    """A rod of other names that can be described as a `Continuum`."""
+    """A rod with other attribute names that can be converted to a `Continuum`."""
 
     def as_continuum(self) -> Continuum: ...  # noqa: D102
 
 
 def stable_time_step(rod: "Continuum | Convertible | Limited") -> float:
-    """Return the largest time step of position Verlet that is stable for a rod at rest, or a finalized simulator [s].
+    """Return the largest stable time step of position Verlet for a rod at rest or a finalized simulator [s].
 
-    That of a simulator is the smallest of its rods and of each joint, contact, plane and drag by itself.
+    For a simulator, it is the smallest over its rods and each joint, contact, plane and drag by itself.
 
     The highest frequency of a uniform rod is that of its shortest wave, in which neighbouring nodes
     and elements move oppositely: stretch, twist, and bending coupled to shear. Measured for r/l from
-    0.1 to 8 and G/Y from 0.33 to 3.3: stable at 0.98 of it and unstable at 1.02. For a rod that is
-    not uniform, each element counts with the stiffer of its neighbours.
+    0.1 to 8 and G/Y from 0.33 to 3.3: stable at 0.98 of it and unstable at 1.02. In a non-uniform
+    rod, each element is taken with the stiffer of its joints and the lighter of its nodes.
 
     Parameters
     ----------
@@ -329,7 +328,7 @@ def as_number(name: str, value: ArrayLike) -> float:
 
 
 def as_numbers(name: str, value: ArrayLike) -> Array:
-    """Return an array of floats, or raise TypeError if ``value`` is none of numbers."""
+    """Return an array of floats, or raise TypeError if ``value`` is not numeric."""
     try:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
@@ -337,12 +336,12 @@ def as_numbers(name: str, value: ArrayLike) -> Array:
 
 
 def three(name: str, value: ArrayLike) -> Array:
-    """Return three finite numbers, (3,): of a given array its own memory, so that who changes it is followed.
+    """Return three finite numbers, (3,); an array is returned as a view, so that later changes to it take effect.
 
     Raises
     ------
     TypeError, ValueError
-        If they are none.
+        If ``value`` is anything else.
     """
     numbers = as_numbers(name, value)
     if numbers.size != 3 or not np.isfinite(numbers).all():
@@ -351,12 +350,12 @@ def three(name: str, value: ArrayLike) -> Array:
 
 
 def as_count(name: str, value: object, least: int) -> int:
-    """Return a whole number that is not below ``least`` as an int.
+    """Return a whole number of at least ``least`` as an int.
 
     Raises
     ------
     TypeError
-        If it is not a whole number by its type.
+        If it is not of an integer type.
     ValueError
         If it is too small.
     """
@@ -368,7 +367,7 @@ def as_count(name: str, value: object, least: int) -> int:
 
 
 def as_indices(name: str, value: Any) -> NDArray[np.int64]:
-    """Return an index or several as an array, or raise TypeError if they are no whole numbers."""
+    """Return one or more indices as an array, or raise TypeError if they are not whole numbers."""
     given = np.ravel(np.asarray(value))
     if given.size and given.dtype.kind not in "iu":
         raise TypeError(f"{name} must be whole numbers, not {value!r}")
@@ -382,21 +381,21 @@ def _require_number(name: str, value: Any) -> None:
 
 
 def require_positive(name: str, value: float) -> None:
-    """Raise ValueError unless ``value`` is finite and above zero, and TypeError unless it is a number."""
+    """Raise ValueError unless ``value`` is finite and positive, and TypeError unless it is a number."""
     _require_number(name, value)
     if not (np.isfinite(value) and value > 0.0):
         raise ValueError(f"{name} must be a positive number, not {value}")
 
 
 def require_not_negative(name: str, value: float) -> None:
-    """Raise ValueError unless ``value`` is finite and not below zero, and TypeError unless it is a number."""
+    """Raise ValueError unless ``value`` is finite and not negative, and TypeError unless it is a number."""
     _require_number(name, value)
     if not (np.isfinite(value) and value >= 0.0):
         raise ValueError(f"{name} must be zero or a positive number, not {value}")
 
 
 def require_finite(name: str, values: ArrayLike, size: int) -> None:
-    """Raise ValueError unless ``values`` are as many finite numbers as ``size`` says."""
+    """Raise ValueError unless ``values`` are ``size`` finite numbers."""
     array = np.asarray(values, dtype=np.float64)
     if array.shape != (size,) or not np.isfinite(array).all():
         raise ValueError(f"{name} must be {size} finite number{'s' if size > 1 else ''}, not {array.tolist()}")

@@ -1,8 +1,8 @@
-"""Scene: what the documented library adds to a Model, as tables that its own compiled step reads.
+"""Scene: the documented library's additions to a Model, as tables that its own compiled step reads.
 
-The environments need none of it, so their step does not carry it. Shapes are written as in `model`:
-L slots, and a letter for the number of rows of each table. A table without rows costs nothing.
-A *span* is the slots that a row acts on: first and last + 1. A *place* is the slot of a node or
+The environments use none of it, so their step omits it. Shapes are written as in `model`: L slots,
+and a letter for the number of rows of each table. A table without rows costs nothing. A *span* is
+the range of slots that a row acts on: first and last + 1. A *place* is the slot of a node or
 element of a rod, or -1 - b for rigid body b.
 """
 
@@ -34,12 +34,12 @@ class PointLoads(NamedTuple):
 
 
 class DeadLoads(NamedTuple):
-    """What is constant in the lab."""
+    """Loads that are constant in the lab frame."""
 
     has_force: bool
-    """Whether any force is not zero"""
+    """Whether any force is nonzero"""
     has_torque: bool
-    """Whether any torque is not zero"""
+    """Whether any torque is nonzero"""
     force: Array
     """On nodes [N], lab frame, (3, L)"""
     torque: Array
@@ -60,7 +60,7 @@ class Flows(NamedTuple):
 
 
 class Tensions(NamedTuple):
-    """The T rods whose loads are made those of a potential."""
+    """The T rods whose internal loads are made to derive from a potential."""
 
     span: Index
     """Slots of the rod's elements, those of a ring without the image, (T, 2) int64"""
@@ -72,7 +72,7 @@ class Drag(NamedTuple):
     """Forces and torques against velocities, by node and element."""
 
     is_on: bool
-    """Whether any is not zero"""
+    """Whether any is nonzero"""
     force: Array
     """Per velocity of the node [N s/m], (L,)"""
     torque: Array
@@ -93,11 +93,11 @@ class Sides(NamedTuple):
     towards: Array
     """Unit vectors from the axis of each element to its point, material frame, (S, 2, 3)"""
     offset: Array
-    """How far the surfaces are apart at rest [m], (S,)"""
+    """Distance between the surfaces at rest [m], (S,)"""
 
 
 class Law(NamedTuple):
-    """How two things press and rub on each other where they overlap."""
+    """Normal force and friction between two overlapping objects."""
 
     stiffness: float
     """Restoring force per overlap k [N/m]"""
@@ -106,7 +106,7 @@ class Law(NamedTuple):
     friction: float
     """Coefficient of Coulomb friction mu"""
     slip_damping: float
-    """Force of friction per slip below the Coulomb bound c [N s/m]"""
+    """Friction force per slip velocity below the Coulomb bound c [N s/m]"""
 
 
 class BodyContacts(NamedTuple):
@@ -123,14 +123,14 @@ class BodyContacts(NamedTuple):
     friction: Array
     """Coefficient of Coulomb friction mu, (P,)"""
     slip_damping: Array
-    """Force of friction per slip below the Coulomb bound c [N s/m], (P,)"""
+    """Friction force per slip velocity below the Coulomb bound c [N s/m], (P,)"""
 
 
 class RodContacts(NamedTuple):
-    """The C pairs of rods that may touch, a rod and itself among them, and which of their E elements are near."""
+    """The C pairs of rods that may touch, possibly a rod with itself, and the neighbour list of their E elements."""
 
     row: Index
-    """Where the pairs of a rod with itself and with later ones begin, and their end, (R + 1,) int64"""
+    """First row of each rod's pairs with itself and with later rods, and the last end, (R + 1,) int64"""
     other: Index
     """The other rod of each pair, ascending among those of a rod, (C,) int64"""
     stiffness: Array
@@ -142,17 +142,17 @@ class RodContacts(NamedTuple):
     elements: Index
     """Slots of the elements that may touch others, ascending, (E,) int64"""
     stray: float
-    """How far an element may move before pairs of elements are listed anew [m]"""
+    """How far an element may move before the neighbour list is rebuilt [m]"""
     last_other: Array
-    """The last slot before the rod that a slot belongs to, a whole number, (L,)"""
+    """The last slot before the rod that a slot belongs to, integer-valued, (L,)"""
     last_clear: Array
-    """The last slot before an element that may touch it, however short they are, a whole number, (L,)"""
+    """The last slot before an element that may touch it, at any compression, integer-valued, (L,)"""
     order: Index
     """The slots in ``elements``, in the order of the last sweep, (E,) int64"""
     neighbours: Index
-    """Pairs of elements that may touch until one has strayed too far, as in `State.neighbours`, (P,) int64"""
+    """The neighbour list, as in `State.neighbours`, (P,) int64"""
     first: Index
-    """The first row of each of these pairs, (P,) int64"""
+    """The first row of each listed pair, (P,) int64"""
 
 
 class Pins(NamedTuple):
@@ -161,13 +161,13 @@ class Pins(NamedTuple):
     slot: Index
     """Place, (N,) int64"""
     start_time: Array
-    """Time from which on the node is held [s]; until then it moves with ``velocity``; (N,)"""
+    """Time from which the node is held [s]; until then it moves with ``velocity``; (N,)"""
     velocity: Array
     """Velocity before the start [m/s], lab frame, (N, 3)"""
     axes: Array
     """One for the lab axes along which it is held, else zero, (N, 3)"""
     position: Array
-    """Where it is held [m], (N, 3)"""
+    """Held position [m], (N, 3)"""
 
 
 class Clamps(NamedTuple):
@@ -176,24 +176,24 @@ class Clamps(NamedTuple):
     slot: Index
     """Place, (N,) int64"""
     start_time: Array
-    """Time from which on the element is held [s]; until then it turns with ``omega``; (N,)"""
+    """Time from which the element is held [s]; until then it rotates with ``omega``; (N,)"""
     omega: Array
     """Angular velocity before the start [rad/s], material frame, (N, 3)"""
     axes: Array
-    """One for the lab axes about which it does not turn, else zero, (N, 3)"""
+    """One for the lab axes about which it does not rotate, else zero, (N, 3)"""
     has_directors: Array
     """One if the directors are set, zero if only the angular velocity is, (N,)"""
     directors: Array
-    """How it is held, (N, 3, 3)"""
+    """Held directors, (N, 3, 3)"""
 
 
 class Decay(NamedTuple):
-    """Damping of velocities by exponential decay, and what it comes to at the present time step."""
+    """Exponential damping of velocities, and its factors at the current time step."""
 
     is_on: bool
-    """Whether any rate is not zero"""
+    """Whether any rate is nonzero"""
     is_dilating: bool
-    """Whether any dilating rate is not zero"""
+    """Whether any dilating rate is nonzero"""
     node_rate: Array
     """Of velocity [1/s], (L,)"""
     element_rate: Array
@@ -205,7 +205,7 @@ class Decay(NamedTuple):
     element_factor: Array
     """exp(-rate dt) for elements, without the dilating part, (L,)"""
     is_on_bodies: bool
-    """Whether any rate of bodies is not zero"""
+    """Whether any rate of bodies is nonzero"""
     body_rate: Array
     """Of the velocity of bodies [1/s], (B,)"""
     body_turn_rate: Array
@@ -218,7 +218,7 @@ class Filters(NamedTuple):
     span: Index
     """Slots of the rod's nodes, those of a ring without the images, (F, 2) int64"""
     order: Index
-    """How often the Laplacian is taken, (F,) int64"""
+    """Number of times the Laplacian is applied, (F,) int64"""
     is_closed: NDArray[np.bool_]
     """Whether the rod is a ring, (F,) bool"""
 
@@ -236,7 +236,7 @@ class Scene(NamedTuple):
     """All features of a simulation that are not in its Model."""
 
     blocks: Index
-    """Slots of the rods that the stages of strains take at a time, so that they stay in the cache, (N, 2) int64"""
+    """Spans of rods that the strain stages process at a time, so that they stay in the cache, (N, 2) int64"""
     rings: Rings
     touched: Index
     """Slots of the rods that point loads and joints act on, (T,) int64"""
@@ -272,7 +272,7 @@ class Hooks(NamedTuple):
     values: int
     """After each drift: constraints of position and directors"""
     loads: int
-    """After all built-in loads but the planes"""
+    """After all built-in loads except those of planes"""
     rates: int
     """After each kick: constraints of velocities"""
     damping: int

@@ -1,9 +1,9 @@
-"""The largest time step that what is declared allows: rods, joints, contacts, planes, and drag.
+"""The largest stable time step for the declared rods, joints, contacts, planes, and drag.
 
-Position Verlet with springs K and dampers C on masses M is stable as long as dt^2 K + 2 dt C < 4 M. Springs of contact
-act where there is contact, and rods stiffen each other, so each limit here is of one spring and damper alone on the
-masses that it moves: above it a scene is unstable for certain as soon as these are in contact; below the smallest, a
-scene may still be unstable where several meet.
+Position Verlet with springs K and dampers C on masses M is stable while dt^2 K + 2 dt C < 4 M. Contact springs act
+only in contact, and rods stiffen each other, so each limit here is for a single spring and damper on the masses that
+it moves: above it, a scene is certainly unstable once these are in contact; below the smallest, a scene may still be
+unstable where several act together.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,7 +16,7 @@ from .model import Array, Index, Joints, Model, Planes
 from .scene import BodyContacts, Drag, Flows, RodContacts, Scene, Sides
 
 SOMEWHAT = 0.5
-"""The quantile of a rod's elements that a contact is judged by: some of a tapered rod are far lighter than others"""
+"""Quantile of a rod's elements that sets the limit of a contact: in a tapered rod, some are far lighter than others"""
 
 
 class Limit(NamedTuple):
@@ -25,7 +25,7 @@ class Limit(NamedTuple):
     time_step: float
     """[s]"""
     culprit: str
-    """What it is, and of which systems"""
+    """What is unstable, and of which systems"""
 
 
 def largest_step(squared_frequency: ArrayLike, damping_rate: ArrayLike) -> float:
@@ -38,15 +38,15 @@ def largest_step(squared_frequency: ArrayLike, damping_rate: ArrayLike) -> float
 def limits(
     model: Model, scene: Scene | None = None, rods: Sequence[str] = (), bodies: Sequence[str] = ()
 ) -> list[Limit]:
-    """Return the limits of all that acts on the rods and bodies of a model, but not those of rods by themselves.
+    """Return the limits of everything that acts on the rods and bodies of a model, except those of the rods themselves.
 
     Parameters
     ----------
     model : Model
     scene : Scene, optional
-        What the library adds to it.
+        The library's additions to it.
     rods, bodies : sequence of str, optional
-        How culprits call them; by their number unless given.
+        Their names in the limits' culprits; numbers unless given.
     """
     masses = _Masses(model, rods, bodies)
     everywhere = np.full((model.planes.stiffness.size, 2), (0, model.mass.size))
@@ -74,14 +74,14 @@ def limits(
 
 
 class _Masses:
-    """How much what a force acts on gives way: one over masses of nodes and elements, by place."""
+    """Inverse masses and inertias of nodes, elements and bodies, by place."""
 
     def __init__(self, model: Model, rods: Sequence[str], bodies: Sequence[str]) -> None:
         self.model = model
         self.rod_names = list(rods) or [f"rod {number}" for number in range(model.first_slot.size)]
         self.body_names = list(bodies) or [f"body {number}" for number in range(model.cylinders.mass.size)]
         inverse = model.inv_mass
-        # a force on an element is half on each of its nodes
+        # a force on an element acts half on each of its nodes
         self.element = np.append(0.25 * (inverse[1:] + inverse[:-1]), 0.0)
         spans = zip(model.first_slot.tolist(), model.n_elements.tolist(), strict=True)
         self.rods = [slice(first, first + n) for first, n in spans]
@@ -112,7 +112,7 @@ class _Masses:
 
 
 def _viscosity(masses: _Masses) -> Iterator[Limit]:
-    """Yield the limits of rods' own viscosity: of spin with what turns elements back, of motion alone."""
+    """Yield the limits of rods' own viscosity: of rotation with its elastic stiffness, of translation alone."""
     m = masses.model
     for number, span in enumerate(masses.rods if m.is_viscous else ()):
         # the image of a ring's first element has no inertia
@@ -176,7 +176,7 @@ def _ground(masses: _Masses, body: int, k: float, nu: float) -> Limit:
 
 
 def _joints(masses: _Masses, joints: Joints) -> Iterator[Limit]:
-    """Yield the limits of joints along and about their axes, and of all that are at one place together."""
+    """Yield the limits of joints along and about their axes, and of all joints at one place together."""
     at: dict[int, list[float]] = {}
     for j, (one, two) in enumerate(joints.node.tolist()):
         k, nu = float(joints.stiffness[j]), float(joints.damping[j])
@@ -189,7 +189,7 @@ def _joints(masses: _Masses, joints: Joints) -> Iterator[Limit]:
         kt, nut, hinge = joints.turn_stiffness[j], joints.turn_damping[j], joints.hinge_stiffness[j]
         if kt > 0.0 or nut > 0.0 or hinge > 0.0:
             a, b = (np.sort(masses.turn(place)) for place in joints.element[j].tolist())
-            # however they are turned, the planes of their two lightest axes meet in a line
+            # in any orientation, the planes of their two lightest axes intersect in a line
             gives = max(a[1] + b[1], a[2] + b[0], a[0] + b[2])
             yield Limit(largest_step(kt * gives, nut * gives), f"the torque of {culprit}")
             yield Limit(largest_step(hinge * (a[0] + b[0]), 0.0), f"the torque of {culprit}")
@@ -226,7 +226,7 @@ def _flows(masses: _Masses, model: Model, flows: Flows) -> Iterator[Limit]:
 
 
 def require_stable_model(model: Model, time_step: float) -> None:
-    """Raise ValueError unless ``time_step`` is below the limits of all that acts on a model's rods and bodies [s]."""
+    """Raise ValueError unless ``time_step`` [s] is below every limit of what acts on a model's rods and bodies."""
     bound, culprit = min(limits(model), default=Limit(np.inf, "nothing"))
     if not time_step < bound:
         raise ValueError(f"the time step must be below {bound:.4g} s for {culprit} to be stable, not {time_step:g} s")

@@ -1,4 +1,4 @@
-"""What rods meet: planes with anisotropic friction, cylinders, each other, and travelling waves of muscle couple."""
+"""What acts on rods: planes with anisotropic friction, cylinders, other rods, and travelling waves of muscle couple."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from .rod import require_finite, require_not_negative, require_positive
 Vector = tuple[float, float, float]
 
 SURFACE_TOLERANCE = 1e-4, 0.05
-"""Gap below which an element is in contact with a plane, unless given: at most this [m], and this of its radius"""
+"""Default gap below which an element touches a plane: the lesser of a length [m] and a fraction of its radius"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +31,7 @@ class Plane:
     kinetic_friction, static_friction : tuple of float
         Coefficients forward (along the tangent), backward and sideways.
     slip_tolerance : float
-        Slip velocity up to which friction is static; from twice of it on it is kinetic [m/s].
+        Slip velocity up to which friction is static; from twice this on it is kinetic [m/s].
     surface_tolerance : float, optional
         Gap below which an element is in contact [m]; 1e-4 m unless given, but at most a twentieth of its radius.
     """
@@ -61,20 +61,20 @@ class Plane:
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Gap below which an element is in contact: at most the first [m], and the second of its radius."""
+        """Gap below which an element is in contact: the lesser of a length [m] and a fraction of its radius."""
         return SURFACE_TOLERANCE if self.surface_tolerance is None else (self.surface_tolerance, np.inf)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """How two round things push and rub each other where they overlap.
+    """Normal force and friction between two overlapping round objects.
 
-    The normal force is ``stiffness`` times the overlap and ``damping`` times the velocity of
-    approach, and never pulls. Friction is ``slip_damping`` times the slip, up to ``friction`` times
-    the normal force (Coulomb's law; Preclik, Popa and Ruede 2011): what sticks creeps by the force
-    it bears over ``slip_damping``, which must stay below the lighter one's mass over the time step.
-    Where nodes of rods meet, up to four pairs of elements touch: with m the mass of a node and dt the
-    time step, ``stiffness`` below m/(2 dt^2) and ``damping`` below m/(4 dt) are stable. Radii are
+    The normal force is ``stiffness`` times the overlap plus ``damping`` times the velocity of
+    approach, and never pulls. Friction is ``slip_damping`` times the slip velocity, up to ``friction``
+    times the normal force (Coulomb's law; Preclik, Popa and Ruede 2011): objects that stick creep at
+    the tangential force over ``slip_damping``, which must stay below the lighter mass over the time
+    step. Where nodes of rods touch, up to four pairs of elements do: with m the mass of a node and dt
+    the time step, ``stiffness`` below m/(2 dt^2) and ``damping`` below m/(4 dt) are stable. Radii are
     those at rest.
 
     Attributes
@@ -86,7 +86,7 @@ class Contact:
     friction : float
         Coefficient of Coulomb friction mu.
     slip_damping : float
-        Force of friction per slip c, below the Coulomb bound [N s/m].
+        Friction force per slip velocity c, below the Coulomb bound [N s/m].
     """
 
     stiffness: float
@@ -115,7 +115,7 @@ class Joint:
     damping : float
         Force per relative velocity nu [N s/m].
     turn_stiffness : float
-        Torque per angle by which the two elements have turned from how they were described [N m]; 0 leaves them free.
+        Torque per angle of relative rotation from the pose described [N m]; 0 for free rotation.
     turn_damping : float
         Torque per relative angular velocity [N m s].
 
@@ -134,7 +134,7 @@ class Joint:
 
     def __post_init__(self) -> None:
         if len(self.rods) != 2 or len(self.ends) != 2 or not set(self.ends) <= {0, -1}:
-            raise ValueError(f"rods and ends must be of two rods, each end 0 or -1, not {self.rods} and {self.ends}")
+            raise ValueError(f"rods and ends must be two each, with ends 0 or -1, not {self.rods} and {self.ends}")
         require_positive("stiffness", self.stiffness)
         for name in ("damping", "turn_stiffness", "turn_damping"):
             require_not_negative(name, getattr(self, name))
@@ -144,7 +144,7 @@ class Joint:
 class Cylinder:
     """A free rigid cylinder: it has weight, stands, tips, rolls and slides on planes, and rods push it.
 
-    Rods meet it as a capsule, whose ends are domes; planes at the rims of its flat ends.
+    Rods touch it as a capsule with domed ends; planes touch the rims of its flat ends.
 
     Attributes
     ----------
@@ -161,7 +161,7 @@ class Cylinder:
     mass : float
         [kg]
     rods : Contact
-        How rods touch it.
+        Contact with rods.
     ground_stiffness : float
         Restoring force per penetration of a plane at each point of contact [N/m].
     ground_damping : float
@@ -220,7 +220,7 @@ class Cylinder:
 class Wave:
     """A travelling wave of muscle couple along a rod (Gazzola et al. 2018, section 5.2).
 
-    With s the arc length of an element's end over the whole, the couple between two elements is
+    With s the arc length of an element's end over the total, the couple between two elements is
     min(1, t/ramp) beta(s) sin(2 pi t/period - k s + phase) about ``axis``, taken in reverse order
     along the rod; equal and opposite on the two. beta is a cubic B-spline.
 
@@ -261,14 +261,14 @@ class Wave:
         require_finite("phase", [self.phase], 1)
 
     def profiles(self, rest_length: Array) -> tuple[Array, Array]:
-        """Return what multiplies sin and cos of 2 pi t/period: the couple at Voronoi points [N m], (n - 1,) each."""
+        """Return the factors of sin and cos of 2 pi t/period in the couple at Voronoi points [N m], (n - 1,) each."""
         s = np.cumsum(rest_length) / np.sum(rest_length)
         return wave_profiles(s, beta_spline(self.coefficients, s), self.wave_number, self.phase)
 
 
 def beta_spline(coefficients: ArrayLike, s: Array) -> Array:
     """Return the cubic B-spline with control ``coefficients``, at least four, at arc lengths ``s`` from 0 to 1."""
-    # imported here: it takes longer than all else that `import elastica_gym` does
+    # imported here: it takes longer than the rest of `import elastica_gym`
     from scipy.interpolate import BSpline
 
     b = np.asarray(coefficients, dtype=np.float64)
@@ -278,7 +278,7 @@ def beta_spline(coefficients: ArrayLike, s: Array) -> Array:
 
 
 def wave_profiles(s: Array, beta: Array, wave_number: float, phase: float) -> tuple[Array, Array]:
-    """Return what multiplies sin and cos of omega t in a travelling wave: couples at Voronoi points, (n - 1,) each.
+    """Return the factors of sin and cos of omega t in a travelling wave: couples at Voronoi points, (n - 1,) each.
 
     The couple is beta sin(omega t - k s + phase), taken in reverse order along the rod.
     """
@@ -288,7 +288,7 @@ def wave_profiles(s: Array, beta: Array, wave_number: float, phase: float) -> tu
 
 
 def net_couple(couple: Array) -> Array:
-    """Return what couples at Voronoi points come to on elements, (n - 1,) to (n,).
+    """Return the net couples on elements from couples at Voronoi points, (n - 1,) to (n,).
 
     An element gets the couple of the joint before it, and minus that of the joint after it.
     """

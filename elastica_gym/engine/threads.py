@@ -1,4 +1,4 @@
-"""Compiled code on several threads: it does not hold Python's lock while it runs."""
+"""Compiled code on several threads; it runs without Python's global lock."""
 
 import functools
 import os
@@ -14,22 +14,22 @@ from .model import Control, Index, Model, State
 
 Result = TypeVar("Result")
 APART = 5
-"""From one environment to the next that is taken: a CPU reads ahead, and would fetch what another writes beside"""
+"""Stride between environments taken in turn: prefetching CPUs would fetch adjacent memory that another one writes"""
 
 
 def available_cpus() -> int:
-    """Return how many CPUs this process may run on, which may be fewer than there are."""
+    """Return how many CPUs this process may run on, possibly fewer than the machine has."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def side_by_side(functions: Sequence[Callable[[], Result]]) -> list[Result]:
-    """Call functions at the same time, the first in this thread, and return what they return."""
+    """Call functions concurrently, the first in this thread, and return their results."""
     pool = _pool(os.getpid(), len(functions) - 1)
     futures = [pool.submit(function) for function in functions[1:]]
     try:
         first = functions[0]()
     finally:
-        # also after Ctrl-C: when this returns or raises, nobody writes any more
+        # also after Ctrl-C: no thread may still write when this returns or raises
         for future in futures:
             future.exception()
     return [first, *(future.result() for future in futures)]
@@ -44,7 +44,7 @@ class Team:
     state : State
     control : Control
     n_threads : int
-        How many there are at most.
+        Maximum number of threads.
     """
 
     def __init__(self, model: Model, state: State, control: Control, n_threads: int) -> None:
@@ -54,7 +54,7 @@ class Team:
     def advance(self, n_envs: int, dt: float, n_substeps: int, then: Callable[[Index], None] | None = None) -> None:
         """Advance the first environments, as `advance` does.
 
-        Each thread then calls ``then``, if it is given, with those that it has advanced, (k,).
+        Each thread then calls ``then``, if given, with the environments that it has advanced, (k,).
         """
         order, queue = _order(n_envs), np.zeros(1, dtype=np.int64)
 
@@ -69,11 +69,11 @@ class Team:
 
 @functools.lru_cache(maxsize=8)
 def _order(n_envs: int) -> Index:
-    """Return the order in which environments are taken; not to be changed."""
+    """Return the order in which environments are taken; do not modify it."""
     return np.argsort(np.arange(n_envs) % APART, kind="stable")
 
 
 @functools.lru_cache(maxsize=8)
 def _pool(process: int, n_threads: int) -> ThreadPoolExecutor:
-    """Return this process's threads; a forked child makes its own, for its parent's did not come along."""
+    """Return this process's threads; a forked child creates its own, as threads do not survive a fork."""
     return ThreadPoolExecutor(max_workers=max(1, n_threads), thread_name_prefix="elastica_gym")

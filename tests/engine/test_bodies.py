@@ -153,5 +153,5 @@ def test_impossible_cylinders_are_named(options, message):
 
 def test_a_model_wants_its_cylinders():
     model, *_ = scene(cylinder())
-    with pytest.raises(ValueError, match="cylinders must be the 1 of the model, not 0"):
+    with pytest.raises(ValueError, match="cylinders must be 1, as in the model, not 0"):
         at_rest(model, [BYSTANDER])

@@ -1,8 +1,8 @@
-"""Where the machine code of entries is kept: in a folder keyed by everything that decides what it is.
+"""The cache of entries' machine code: a folder keyed by everything that determines the code.
 
-That is this package's version, the text of all physics, Numba's version and the CPU; in it, code is stamped with the
-text of its entry's own file. Numba's own cache looks at that file alone, and would load an entry stale after a change
-to a stage in another one.
+The key covers this package's version, the source of all physics, Numba's version and the CPU; within the folder, code
+is stamped with the source of its entry's own file. Numba's own cache checks only that file, and would load a stale
+entry after a change to a stage in another file.
 """
 
 import functools
@@ -22,7 +22,7 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache
 
 CACHE_VARIABLE = "ELASTICA_GYM_CACHE_DIR"
 ENGINE = Path(__file__).parents[1]
-# all that compiled code depends on
+# everything that compiled code depends on
 SOURCES = ("jit/*.py", "kernels/**/*.py", "model.py", "scene.py")
 
 
@@ -30,8 +30,8 @@ SOURCES = ("jit/*.py", "kernels/**/*.py", "model.py", "scene.py")
 def cache_folder() -> Path:
     """Return the folder of compiled kernels for this version, source, Numba and CPU.
 
-    It lies under the folder that the environment variable ``ELASTICA_GYM_CACHE_DIR`` names, or else
-    under the user's cache folder, or, where that cannot be written, in the temporary folder.
+    It lies in the folder named by the environment variable ``ELASTICA_GYM_CACHE_DIR``, if set; else
+    in the user's cache folder or, if that is not writable, in the temporary folder.
     """
     key = hashlib.sha256()
     for part in (_package_version(), numba.__version__, llvmlite.__version__, sys.version, _cpu()):
@@ -62,13 +62,13 @@ def _package_version() -> str:
 
 def _cpu() -> str:
     features = llvmlite.binding.get_host_cpu_features().flatten()
-    # these two are Numba's own and decide what code it emits
+    # these two override the CPU that Numba compiles for
     chosen = (os.environ.get("NUMBA_CPU_NAME", ""), os.environ.get("NUMBA_CPU_FEATURES", ""))
     return "\0".join((llvmlite.binding.get_host_cpu_name(), features, *chosen))
 
 
 class _EntryLocator:
-    """Tell Numba's cache where an entry is kept, and whether it is fresh by the text of its own file."""
+    """Give Numba's cache the folder of an entry, and the source of its own file as its stamp."""
 
     def __init__(self, py_func: Callable, py_file: str) -> None:
         self._name = py_func.__qualname__
@@ -96,13 +96,13 @@ class _CacheImpl(CompileResultCacheImpl):
 
 
 class EntryCache(FunctionCache):
-    """Numba's function cache in our folder, with a word to whoever waits for the compiler."""
+    """Numba's function cache in our folder, with compilation reported on stderr."""
 
     _impl_class = _CacheImpl
     _started = 0.0
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return kept code, or announce that it is compiled."""
+        """Return cached code, or announce its compilation."""
         found = super().load_overload(sig, target_context)
         if found is None:
             self._started = time.perf_counter()
@@ -115,7 +115,7 @@ class EntryCache(FunctionCache):
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep compiled code, and say where."""
+        """Cache compiled code, and report where."""
         took = f"{time.perf_counter() - self._started:.0f} s"
         try:
             super().save_overload(sig, data)

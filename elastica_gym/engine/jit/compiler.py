@@ -5,11 +5,11 @@ to overlap, without which LLVM cannot vectorise a loop over more than a handful 
 inlined into its caller by LLVM, which keeps dozens of array descriptors out of the call. Numba has
 the first only as a flag of its compiler pipeline, so a pipeline of our own sets it.
 
-A processor keeps some hundred instructions in flight, and a loop is as fast as it can overlap its
-turns: a long chain of dependent operations, such as an inverse root followed by a polynomial, makes
-a stage of its own with a short body, rather than a part of a long one.
+A processor keeps a few hundred instructions in flight, and a loop is fast if its iterations overlap:
+a long chain of dependent operations, such as an inverse root followed by a polynomial, should be a
+stage of its own with a short body, rather than part of a long one.
 
-An *entry* is what Python calls; its machine code is kept on disk (`.cache`).
+An *entry* is a function that Python calls; its machine code is cached on disk (`.cache`).
 """
 
 import importlib
@@ -28,13 +28,13 @@ from numba.core.typed_passes import NativeLowering
 from ..model import LEAD
 from .cache import EntryCache
 
-# Slots are counted with unsigned integers: a signed index may be negative, which Numba's wrap-around
-# must then handle, and loops do not vectorise where LLVM cannot prove that it is not.
+# Slots are unsigned integers: Numba wraps negative indices around, and loops do not vectorise unless
+# LLVM can prove that a signed index is not negative.
 ONE = np.uint64(1)
 FIRST = np.uint64(LEAD)
 
-# contraction into multiply-adds is all that is relaxed: reassociation would cost reproducibility
-# (and nothing is allocated, so that arrays need no reference counts: they would take half of the step)
+# only contraction into multiply-adds is allowed: reassociation would cost reproducibility
+# (nothing is allocated, so arrays need no reference counts, which would take half of the step)
 _COMMON: dict[str, Any] = {
     "_nrt": False,
     "nogil": True,
@@ -42,27 +42,27 @@ _COMMON: dict[str, Any] = {
     "fastmath": {"contract"},
     "no_cfunc_wrapper": True,
 }
-# what only kernels call needs no way in from Python, which for a Model and a State takes long to compile
+# functions that only kernels call need no Python wrapper, which for a Model and a State takes long to compile
 _INNER: dict[str, Any] = {**_COMMON, "no_cpython_wrapper": True}
 
 
 class _WideLowering(lowering.Lower):
-    """Numba's lowering, with leave for LLVM to use all 512 bits of a CPU that has them.
+    """Numba's lowering, with 512-bit vectors allowed on CPUs that have them.
 
-    By default LLVM keeps to 256 bits on most of these CPUs, which costs the step a third of its speed.
-    Elsewhere the attribute is without effect.
+    By default LLVM uses 256 bits on most of these CPUs, which costs the step a third of its speed.
+    On other CPUs the attribute has no effect.
     """
 
     def setup_function(self, fndesc: Any) -> None:
         super().setup_function(fndesc)
-        # llvmlite knows only attributes without a value, and lists this one as it stands
+        # llvmlite supports only attributes without a value, and writes this one verbatim
         set.add(self.function.attributes, '"prefer-vector-width"="512"')
 
 
 class _EntryLibrary(JITCodeLibrary):
     """The code of an entry, optimised as a whole, once.
 
-    Numba also optimises each function before, and all of it cheaply, to find reference counts that cancel.
+    Numba also optimises each function beforehand, and the whole cheaply, to prune reference counts.
     """
 
     def _optimize_functions(self, ll_module: Any) -> None:
@@ -74,17 +74,17 @@ class _EntryLibrary(JITCodeLibrary):
 
 
 class _StageLibrary(_EntryLibrary):
-    """The code of a stage, vectorised by itself: what surrounds it in an entry has no part in that."""
+    """The code of a stage, vectorised by itself, independently of the entry around it."""
 
     def _finalize_final_module(self) -> None:
-        """Make no machine code, which takes long: only entries are called."""
+        """Skip machine code, which takes long to generate: only entries are called."""
         self._finalize_dynamic_globals()
         self._verify_declare_only_symbols()
         self._finalized = True
 
 
 class _PartLibrary(_StageLibrary):
-    """The code of what else is part of entries, and is optimised there."""
+    """The code of other parts of entries, optimised there."""
 
     def _optimize_final_module(self) -> None:
         pass
@@ -107,7 +107,7 @@ class _PartLowering(NativeLowering):
         state.flags.no_compile = True
         super().run_pass(state)
         state.library.finalize()
-        # callers find the code by a handle, which without machine code there is only in name
+        # callers find the code by a handle, which without machine code is a dummy
         result = state["cr"]
         handle = _dynfunc.make_function(result.fndesc.lookup_module(), state.func_id.func_name, "", 0, result.env, ())
         state.targetctx.insert_user_function(handle, result.fndesc, [state.library])
@@ -156,7 +156,7 @@ class _StagePipeline(_Pipeline):
 
 
 def stage(function: Callable) -> Callable:
-    """Compile one stage of the step; its caller promises that no two arguments overlap."""
+    """Compile one stage of the step; no two arguments may overlap."""
     return numba.njit(pipeline_class=_StagePipeline, forceinline=True, **_INNER)(function)
 
 
@@ -166,7 +166,7 @@ def inline(function: Callable) -> Callable:
 
 
 def apart(function: Callable) -> Callable:
-    """Compile a function that kernels call, for physics that few models have: it leaves the step's code small."""
+    """Compile a function that kernels call without inlining: physics of few models, which would bloat the step."""
     return numba.njit(pipeline_class=_PartPipeline, **_INNER)(function)
 
 
@@ -178,10 +178,10 @@ def entry(function: Callable) -> Callable:
 
 
 class Bound:
-    """An entry whose first arguments are given, for those who call it often.
+    """An entry with its first arguments bound, for frequent calls.
 
-    Numba finds out at each call what types the arguments are, which for the arrays of a Model and a State takes it
-    longer than to call. Here it does so once: all other arguments have to be of the same types at each call.
+    Numba determines the types of the arguments at each call, which for the arrays of a Model and a State takes longer
+    than the call itself. Here it does so once: the other arguments must have the same types at each call.
     """
 
     def __init__(self, function: Any, *arguments: Any) -> None:
@@ -196,7 +196,7 @@ class Bound:
         return self._code(*self._arguments, *others)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # copies, here or in another process, find the code by themselves
+        # a copy, here or in another process, looks the code up again
         return _bind, (self._function.__module__, self._function.__name__, *self._arguments)
 
 

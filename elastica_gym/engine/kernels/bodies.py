@@ -48,7 +48,7 @@ def kick_bodies(dt, mass, J, force, torque, v, w):
 
 @apart
 def orthonormalise_bodies(Q):
-    """Take rounding out of the directors: one Newton step Q <- (3 I - Q Q^T) Q / 2 to the nearest rotation."""
+    """Remove rounding errors from the directors: one Newton step Q <- (3 I - Q Q^T) Q / 2 to the nearest rotation."""
     for b in range(Q.shape[0]):
         q0, q1, q2 = vector(Q[b, 0]), vector(Q[b, 1]), vector(Q[b, 2])
         g01, g02, g12 = -0.5 * dot(q0, q1), -0.5 * dot(q0, q2), -0.5 * dot(q1, q2)

@@ -7,7 +7,7 @@ from .math.vectors import dot, plus, vector
 
 @apart
 def hold(pins, clamps, time, x, Q, body_x, body_Q):
-    """Set the positions and directors of what is held."""
+    """Set the positions and directors of held nodes, elements and bodies."""
     for j in range(pins.slot.size):
         if time > pins.start_time[j]:
             for d in range(3):
@@ -26,7 +26,7 @@ def hold(pins, clamps, time, x, Q, body_x, body_Q):
 
 @apart
 def move(pins, clamps, time, v, Q, w, body_v, body_Q, body_w):
-    """Set the velocities of what moves as prescribed, and stop what is held along and about the axes that are."""
+    """Set prescribed velocities, and zero velocities along and about held axes."""
     for j in range(pins.slot.size):
         is_held = time > pins.start_time[j]
         for d in range(3):
@@ -45,7 +45,7 @@ def move(pins, clamps, time, v, Q, w, body_v, body_Q, body_w):
 
 @inline
 def free_spin(axes, Q, body_Q, k, spin):
-    """Return an angular velocity without its parts about some axes of the lab."""
+    """Return an angular velocity without its components about the given lab axes."""
     if axes[0] * axes[1] * axes[2] != 0.0:
         return 0.0, 0.0, 0.0
     for d in range(3):

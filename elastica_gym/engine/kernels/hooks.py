@@ -1,4 +1,4 @@
-"""The way from compiled code back to Python: a call of a C function by its address."""
+"""Calls from compiled code into Python: of a C function by its address."""
 
 from llvmlite import ir
 from numba import types
@@ -8,7 +8,7 @@ from numba.extending import intrinsic
 
 @intrinsic
 def call(typing_context, address, time):
-    """Call the function at ``address`` with a time and return its answer, a status of int64."""
+    """Call the function at ``address`` with a time and return its status, an int64."""
     if not (isinstance(address, types.Integer) and isinstance(time, types.Float)):
         return None
 

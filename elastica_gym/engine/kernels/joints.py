@@ -40,7 +40,7 @@ def flap(joints, j, d3):
 
 @inline
 def turn(rest, Q, body_Q, one, two):
-    """Return the rotation that is left to the rest rotation, Q2^T vee log(Q2 Q1^T C), in the lab."""
+    """Return the remaining rotation to the rest rotation, Q2^T vee log(Q2 Q1^T C), in the lab."""
     # the rows of C^T Q1 are the directors that element two has at rest, so R = Q2 (C^T Q1)^T
     a, b, c = (director_of(Q, body_Q, one, 0), director_of(Q, body_Q, one, 1), director_of(Q, body_Q, one, 2))
     p = mixed(rest, 0, a, b, c), mixed(rest, 1, a, b, c), mixed(rest, 2, a, b, c)

@@ -1,4 +1,4 @@
-"""How kernels take Model and State apart: rows of arrays, and spans of slots."""
+"""Parts of Model and State as kernels take them: rows of arrays, and spans of slots."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from ..model import BLOCK
 
 @inline
 def rows(a):
-    """Return the three rows of a (3, L) array, which the stages take apart."""
+    """Return the three rows of a (3, L) array, which the stages take separately."""
     return a[0], a[1], a[2]
 
 

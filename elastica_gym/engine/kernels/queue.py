@@ -8,7 +8,7 @@ from numba.extending import intrinsic
 
 @intrinsic
 def fetch_add(typing_context, queue):
-    """Return the number in an array of one int64 and count it up, in one: no two threads get the same."""
+    """Atomically increment the int64 in a one-element array and return its old value; no two threads get the same."""
     if not (isinstance(queue, types.Array) and queue.dtype == int64):
         return None
 

@@ -8,7 +8,7 @@ from ..jit.compiler import ONE, apart, inline
 from .contact.law import middle, twist
 from .math.vectors import add_column, cross, dot, plus, times, to_lab_at, vector
 
-# distances are rounded to so many parts of a metre, so that what is at rest stays at rest
+# distances are rounded to this fraction of a metre, so that rods at rest stay at rest
 PARTS = 1e12
 
 
@@ -20,7 +20,7 @@ def rounded(a):
 
 @inline
 def reach(k, offset, length, rest_length, radius):
-    """Return how far from its axis an element is joined: its half of the offset grows with its radius [m]."""
+    """Return the distance from its axis at which an element is joined: half the offset scales with its radius [m]."""
     return radius[k] + 0.5 * offset * sqrt(rest_length[k] / length[k])
 
 
@@ -34,7 +34,7 @@ def load(force, torque, Q, k, f, arm):
 
 @apart
 def join_sides(sides, x, v, Q, length, rest_length, radius, force, torque):
-    """Add springs between points of two surfaces, dampers between the elements, and what parts them."""
+    """Add springs between points of two surfaces, and dampers and repulsion between the elements."""
     for j in range(sides.stiffness.size):
         one, two = np.uint64(sides.element[j, 0]), np.uint64(sides.element[j, 1])
         r1 = reach(one, sides.offset[j], length, rest_length, radius)
@@ -49,7 +49,7 @@ def join_sides(sides, x, v, Q, length, rest_length, radius, force, torque):
         depth = -rounded(distance - r1 - r2)
         if depth > 0.0:
             rest = plus(rest, -sides.repulsion[j] * depth * sqrt(depth) / distance, between)
-        # dampers and what parts them act on the centres
+        # dampers and repulsion act on the centres
         load(force, torque, Q, one, pull, arm_one)
         load(force, torque, Q, two, times(-1.0, pull), arm_two)
         load(force, torque, Q, one, rest, (0.0, 0.0, 0.0))

@@ -1,6 +1,6 @@
 """The library's step: that of the environments, with the features of a Scene and calls to the user's classes.
 
-It is an entry of its own, compiled when first needed, so that the environments start fast.
+It is a separate entry, compiled when first needed, so that the environments start fast.
 """
 
 from ..jit.compiler import FIRST, entry, inline
@@ -26,10 +26,10 @@ from .rod.loads import clear, clear_at, external, external_at
 from .step import ORTHONORMALISE_EVERY, drift, drift_twice, internal, kick
 from .watch import find_broken
 
-# where there are loads from outside: nowhere, in a few slots, everywhere
+# where external loads act: nowhere, in a few slots, everywhere
 UNLOADED, SPARSE, DENSE = 0, 1, 2
 
-# steps between two looks at whether motion is finite: at each, one would take 2 to 6 % of the step
+# steps between checks that motion is finite: one at each step would take 2 to 6 % of the time
 WATCH_EVERY = 8
 
 
@@ -41,7 +41,7 @@ def answer(address, time):
 
 @inline
 def external_loads(model, scene, state, control):
-    """Collect in Control what acts on rods from outside, but the planes."""
+    """Collect in Control the external loads on rods, except those of planes."""
     point_loads.apply(model, scene, state, control)
     dead_loads.apply(model, scene, state, control)
     muscle_waves.apply(model, scene, state, control)
@@ -53,7 +53,7 @@ def external_loads(model, scene, state, control):
 
 @inline
 def clear_loads(model, scene, state, control, loading):
-    """Set the loads from outside to zero."""
+    """Set the external loads to zero."""
     if loading == DENSE:
         clear(FIRST, end_of(model), rows(control.force[0]), rows(control.torque[0]))
     else:
@@ -64,7 +64,7 @@ def clear_loads(model, scene, state, control, loading):
 
 @inline
 def add_loads(model, scene, state, control, loading):
-    """Add the loads from outside to the net loads."""
+    """Add the external loads to the net loads."""
     s, force, torque = state, control.force[0], control.torque[0]
     if loading == DENSE:
         external(FIRST, end_of(model), rows(force), rows(torque), rows(s.force[0]), rows(s.torque[0]))
@@ -74,7 +74,7 @@ def add_loads(model, scene, state, control, loading):
 
 @inline
 def watch(state, n, broken):
-    """Note the step and the place of the first motion that is found not to be finite, and the last step when it was."""
+    """Record the step and the place of the first non-finite motion found, and the last step known to be finite."""
     if broken[0] == 0:
         place = find_broken(FIRST, n, state.v[0], state.w[0], state.body_v[0], state.body_w[0])
         if place != 0:
@@ -88,15 +88,15 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading, 
     """Take steps of a symplectic scheme. Returns 0, or 1 if a hook asked to stop in the middle of a step.
 
     Unlike `advance`, it does not merge the last drift of a step with the first of the next into one of twice the
-    time: what comes out does not depend, to the last bit, on where a run is cut. External loads are cleared between
-    stages, but neither before the first nor after the last, so that those set from outside act once, and callbacks
-    see them. ``loading`` is one of UNLOADED, SPARSE (only where ``scene.touched`` says) and DENSE. ``broken`` gets the
-    number of the step after which motion is found not to be finite, the place, and the last step known to be sound.
+    time: results do not depend, to the last bit, on where a run is split. External loads are cleared between stages,
+    but neither before the first nor after the last, so that loads set by the caller act once, and callbacks can read
+    them. ``loading`` is one of UNLOADED, SPARSE (only in the slots ``scene.touched``) and DENSE. ``broken`` is set to
+    the step after which non-finite motion is found, its place, and the last step known to be finite.
     """
     n = end_of(model)
     damping.prepare(scene, state, dt)
     n_kicks = scheme.kicks.size
-    # what is held is held where it was: unless somebody looks in, a step's last drift and the next one's first are one
+    # held positions do not change: without a hook, a step's last drift and the next one's first share one pass
     is_paired = scheme.drifts[0] == scheme.drifts[n_kicks] and hooks.values == 0
     is_ahead = False
     for step in range(n_steps):
@@ -153,9 +153,9 @@ def simulate(model, scene, state, control, hooks, scheme, dt, n_steps, loading, 
 
 @entry
 def load(model, scene, state, control, hooks, dt, is_last):
-    """Collect what a scene does to systems as they are, without a step: its loads or, then, the answer of its planes.
+    """Compute the loads of a scene without a step: first all but its planes', then, if ``is_last``, its planes'.
 
-    Loads are added to those in Control, then all to the net loads in State, which the planes answer to. ``dt`` is the
+    Loads are added to those in Control, then all to the net loads in State, to which the planes respond. ``dt`` is the
     time step that friction of bodies on planes needs, 0 for none.
     """
     if is_last:

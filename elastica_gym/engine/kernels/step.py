@@ -26,7 +26,7 @@ ORTHONORMALISE_EVERY = 1024
 
 @inline
 def drift(model, state, i, n, h):
-    """Move environment i by a time h at its present velocities."""
+    """Move environment i by a time h at its current velocities."""
     kinematics(FIRST, n, h, rows(state.x[i]), rows(state.v[i]), matrix(state.Q[i]), rows(state.w[i]))
     if model.cylinders.mass.size > 0:
         drift_bodies(h, state.body_x[i], state.body_v[i], state.body_Q[i], state.body_w[i])
@@ -140,7 +140,7 @@ def plane_contact(model, state, planes, j, i, first, n):
 
 @inline
 def ground(model, state, i, n, dt):
-    """Add the response and friction of the planes to environment i, which answer to all other loads."""
+    """Add the response and friction of the planes to environment i, after all other loads."""
     m, s, p = model, state, model.planes
     s.normal_force[i, :] = 0.0
     for j in range(p.stiffness.size):
@@ -163,10 +163,10 @@ def kick(model, state, i, n, dt):
 
 @entry
 def advance_queue(model, state, control, order, queue, dt, n_substeps, mine):
-    """Advance the environments that ``order`` lists from place ``queue[0]`` on, as `advance` does, among threads.
+    """Advance the environments in ``order`` from ``queue[0]`` on, as `advance` does, shared among threads.
 
-    Who is done with an environment takes the next one: CPUs of a shared machine are not equally fast. Returns how
-    many this thread has advanced, and writes which into ``mine``.
+    A thread that finishes an environment takes the next: CPUs of a shared machine are not equally fast. Returns how
+    many this thread has advanced, and writes their numbers into ``mine``.
     """
     n_mine = 0
     n = end_of(model)
@@ -188,7 +188,7 @@ def advance_queue(model, state, control, order, queue, dt, n_substeps, mine):
             if (state.step[i] + step + 1) % ORTHONORMALISE_EVERY == 0:
                 orthonormalise(FIRST, n, matrix(state.Q[i]))
                 orthonormalise_bodies(state.body_Q[i])
-        # once a call: what neighbours write shares a cache line with what other threads read
+        # once per call: these share cache lines with values that other threads read
         state.step[i] += n_substeps
         state.time[i] = start + n_substeps * dt
         mine[n_mine] = i

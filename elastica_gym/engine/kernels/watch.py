@@ -1,11 +1,11 @@
-"""Whether all motion is finite."""
+"""Detection of non-finite motion."""
 
 from ..jit.compiler import apart, inline, stage
 
 
 @stage
 def count_broken(first, n, v, w):
-    """Return at how many slots a velocity or an angular velocity is infinite or NaN."""
+    """Return the number of slots with an infinite or NaN velocity or angular velocity."""
     count = 0
     for k in range(first, n):
         total = v[0][k] + v[1][k] + v[2][k] + w[0][k] + w[1][k] + w[2][k]
@@ -16,14 +16,14 @@ def count_broken(first, n, v, w):
 
 @inline
 def is_broken(v, w):
-    """Return whether any part of a velocity or an angular velocity is infinite or NaN."""
+    """Return whether any component of a velocity or an angular velocity is infinite or NaN."""
     total = v[0] + v[1] + v[2] + w[0] + w[1] + w[2]
     return total - total != 0.0
 
 
 @apart
 def find_broken(first, n, v, w, body_v, body_w):
-    """Return the place of the first that moves at an infinite or NaN velocity: a slot, or -1 - b for body b; else 0."""
+    """Return the place of the first infinite or NaN velocity: a slot, or -1 - b for body b; 0 if there is none."""
     for b in range(body_v.shape[0]):
         if is_broken(body_v[b], body_w[b]):
             return -1 - b

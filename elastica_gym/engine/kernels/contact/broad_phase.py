@@ -1,10 +1,10 @@
 """The broad phase: which elements may touch each other.
 
-Pairs are listed with a margin, and the list serves until one of its elements has used up its share of it. To
-list them, a sweep along the axis of the widest extent: elements sorted by where the balls about them begin are
-compared only with those that begin before they end; as the order is nearly right already, sorting by insertion
-takes a time that grows with the number of elements. Pairs are taken in the order of their slots, so that
-results do not depend on when they were listed.
+Pairs are listed with a margin, and the list is valid until an element has used up its share of the margin. It
+is built by a sweep along the axis of the widest extent: elements, sorted by where their bounding spheres begin,
+are compared only with those that begin before they end; as they are nearly sorted already, insertion sort takes
+a time proportional to the number of elements. Pairs are processed in the order of their slots, so that results
+do not depend on when the list was built.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ from .law import middle
 
 @inline
 def widest(x, order):
-    """Return the axis, 0 to 2, along which the elements spread furthest."""
+    """Return the axis, 0 to 2, along which the elements have the widest extent."""
     best, axis = -1.0, 0
     for c in range(3):
         row = x[c]
@@ -32,7 +32,7 @@ def widest(x, order):
 
 @stage
 def count_displaced(n, x, reach, neighbour_x, neighbour_reach, limit):
-    """Count the nodes that have moved, and the balls that have grown, by more than ``limit`` since they were listed."""
+    """Count the nodes that moved, and the spheres that grew, by more than ``limit`` since the list was built."""
     count = 0
     for k in range(FIRST, n):
         d0, d1, d2 = (
@@ -40,7 +40,7 @@ def count_displaced(n, x, reach, neighbour_x, neighbour_reach, limit):
             x[1][k] - neighbour_x[1][k],
             x[2][k] - neighbour_x[2][k],
         )
-        # false for what is not a number, too
+        # also false for NaN
         here = 1 if d0 * d0 + d1 * d1 + d2 * d2 <= limit * limit else 0
         alike = 1 if reach[k] - neighbour_reach[k] <= limit else 0
         count += 1 - here * alike
@@ -49,7 +49,7 @@ def count_displaced(n, x, reach, neighbour_x, neighbour_reach, limit):
 
 @stage
 def extents(n, along, reach, margin, begin, end):
-    """Compute where the balls, larger by a margin, begin and end along an axis."""
+    """Compute where the bounding spheres, enlarged by a margin, begin and end along an axis."""
     for k in range(FIRST, n):
         centre = 0.5 * (along[k] + along[k + ONE])
         begin[k], end[k] = centre - (reach[k] + margin), centre + (reach[k] + margin)
@@ -84,10 +84,10 @@ def sort_pairs(neighbours, n_neighbours):
 
 @inline
 def build_neighbour_list(order, begin, end, x, reach, last_clear, margin, neighbours):
-    """List the pairs of elements whose balls, larger by a margin, overlap.
+    """List the pairs of elements whose bounding spheres, enlarged by a margin, overlap.
 
-    Without those whose lower slot is beyond the last one that may touch the higher. Returns how many there are, of
-    which as many are listed as there is room for, and how many the sweep has met.
+    Omits pairs whose lower slot is beyond the last one that may touch the higher. Returns the number of pairs, also
+    of those that do not fit in the list, and the number that the sweep compared.
     """
     sort(order, begin)
     n_neighbours = n_met = 0
@@ -97,7 +97,7 @@ def build_neighbour_list(order, begin, end, x, reach, last_clear, margin, neighb
         until = end[j]
         for b in range(a + 1, order.size):
             k = order[b]
-            # false for what is not a number, too
+            # also false for NaN
             if not begin[k] <= until:
                 break
             n_met += 1
@@ -118,9 +118,9 @@ def build_neighbour_list(order, begin, end, x, reach, last_clear, margin, neighb
 def update_neighbour_list(
     n, order, neighbours, n_neighbours, neighbour_x, neighbour_reach, stray, begin, end, reach, last_clear, x,
 ):  # fmt: skip
-    """List the pairs anew if an element may have come nearer than the list allows for.
+    """Rebuild the neighbour list if an element may have used up its margin.
 
-    Returns how many there are, and whether they are new.
+    Returns the number of pairs, and whether the list is new.
     """
     is_new = n_neighbours < 0 or count_displaced(n, (x[0], x[1], x[2]), reach, neighbour_x, neighbour_reach, stray) > 0
     if is_new:

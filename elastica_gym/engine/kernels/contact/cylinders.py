@@ -1,7 +1,7 @@
 """Cylinders on planes, and rods on cylinders.
 
-Rods meet a cylinder as a capsule: its axis from end to end, swept by a sphere of its radius, so that
-its ends are domes to them. Planes meet it as it is, at the rims of its flat ends.
+Rods touch a cylinder as a capsule with domed ends: its axis, swept by a sphere of its radius. Planes
+touch the rims of its flat ends.
 """
 
 from math import sqrt
@@ -11,17 +11,17 @@ from ..math.roots import inverse_sqrt
 from ..math.vectors import add, column, cross, dot, norm, plus, times, to_lab, to_material, vector
 from .law import axis_velocity, friction_force, load, normal_force, overlap, spin_velocity, twist
 
-# points of contact: three on either rim
+# points of contact: three on each rim
 POINTS = 6
-# most passes over the points of contact, each of which sees what the others have changed
+# maximum Gauss-Seidel passes over the points of contact
 SWEEPS = 30
-# change of friction in a pass, relative to its bound, below which it is found
+# change of friction in a pass, relative to its bound, below which it has converged
 SETTLED = 1e-5
 
 
 @stage
 def clearance(first, n, x, length, radius, body_radius, body_length, centre, axis, gap):
-    """Compute a lower bound of the gap between elements and a cylinder: as if they were balls about their centres."""
+    """Compute a lower bound of the gap between elements and a cylinder, from the elements' bounding spheres."""
     c0, c1, c2 = centre
     a0, a1, a2 = axis
     half = 0.5 * body_length
@@ -35,7 +35,7 @@ def clearance(first, n, x, length, radius, body_radius, body_length, centre, axi
         d0, d1, d2 = d0 - along * a0, d1 - along * a1, d2 - along * a2
         squared = d0 * d0 + d1 * d1 + d2 * d2
         reach = 0.5 * length[k] + radius[k] + body_radius
-        # a ghost has no section
+        # a ghost has no cross-section
         gap[k] = squared * inverse_sqrt(squared) - reach if radius[k] > 0.0 else 1.0
 
 
@@ -75,7 +75,7 @@ def rods_on_cylinders(first, last, gap, x, v, Q, w, length, radius, cylinders, b
 
 @inline
 def rim(Q, length, radius, n, number):
-    """Return one of six points, from the centre: on each end's rim the lowest one and those 120 degrees from it.
+    """Return one of six points, from the centre: on each end's rim, the lowest and those 120 degrees from it.
 
     It stands on three, lies on two and tips over one.
     """
@@ -96,9 +96,9 @@ def rim(Q, length, radius, n, number):
 def cylinders_on_planes(dt, cylinders, planes, x, v, directors, w, contact, force, torque):
     """Add the response of the planes and Coulomb friction at the rims' points of contact; after every other load.
 
-    The response is k times the depth and nu times the approach of each point, never adhesive. ``contact``
-    gets N, friction and the point from the centre, all in the lab, (C, 6, 7); the friction in it is where the
-    search for the new one starts.
+    The response is k times the depth plus nu times the approach of each point, never adhesive. ``contact``
+    is set to N, friction and the point from the centre, all in the lab, (C, 6, 7); its old friction is the
+    initial guess for the new.
     """
     c, p = cylinders, planes
     for b in range(c.mass.size):
@@ -115,7 +115,7 @@ def cylinders_on_planes(dt, cylinders, planes, x, v, directors, w, contact, forc
                 N = N if N > 0.0 and depth > 0.0 else 0.0
                 touching = touching or N > 0.0
                 point = contact[b, number]
-                # what stops slip within a step of no duration is not defined
+                # friction that stops slip within a step of zero duration is undefined
                 last = vector(point[1:]) if dt > 0.0 else (0.0, 0.0, 0.0)
                 point[0] = N
                 point[1], point[2], point[3] = within(c.ground_friction[b] * N, plus(last, -dot(last, n), n))
@@ -150,10 +150,10 @@ def turned(axis, J, a):
 
 @inline
 def rub(dt, contact, mu, n, axis, mass, J, ahead, spin):
-    """Find the friction at the points of contact: what ends their slip with this step, as far as mu N allows.
+    """Compute the friction that stops the slip of the points of contact within this step, up to mu N.
 
     So a cylinder rests on a slope without creeping. ``ahead`` and ``spin`` are its velocities after a
-    step without friction. Passes over the points, each with what the others do (projected Gauss-Seidel).
+    step without friction. Projected Gauss-Seidel over the points of contact.
     """
     for number in range(POINTS):
         friction = vector(contact[number, 1:])
@@ -170,7 +170,7 @@ def rub(dt, contact, mu, n, axis, mass, J, ahead, spin):
                 u = plus(u, -dot(u, n), n)
                 speed = norm(u)
                 if speed > 0.0:
-                    # how far a unit of force against the slip changes it
+                    # change of slip per unit of force against it
                     lever = times(1.0 / speed, cross(arm, u))
                     yields = 1.0 / mass + dot(lever, turned(axis, J, lever))
                     old = vector(point[1:])

@@ -1,14 +1,14 @@
-"""Contact of two round things: closest points of their axes, and the force of one on the other.
+"""Contact of two round objects: closest points of their axes, and the force of one on the other.
 
-Rods and cylinders touch as segments swept by a sphere of their radius, which is an element's at rest. n points
+Rods and cylinders touch as segments swept by a sphere of their radius, for elements that at rest. n points
 from the first to the second, g is the overlap r1 + r2 - d of their surfaces, and u the velocity of the
-first less that of the second.
+first minus that of the second.
 
 The spring's energy k g^2/2 depends on positions alone, so its force goes to nodes alone: N n by the weights
 1 - s and s of the point (1 - s) x_k + s x_k+1 where it acts. As the closest points are stationary, this is
-the energy's gradient: contact keeps energy, momentum and angular momentum. Friction acts where the overlap is
-in the middle, on the line through both points. (Radii that follow the stretch would push the nodes of an
-element apart by N r/(2 l), which no step for arms stands where l < r.)
+the energy's gradient: contact conserves energy, momentum and angular momentum. Friction acts in the middle of
+the overlap, on the line through both points. (Radii that follow the stretch would push the nodes of an
+element apart by N r/(2 l), which is unstable at any time step used for arms where l < r.)
 """
 
 from math import sqrt
@@ -30,10 +30,10 @@ def clip(t):
 
 @inline
 def closest(a, e, c1, b, f, c2):
-    """Return where |b + t f - a - s e|^2 + c1 (s - 1/2)^2 + c2 (t - 1/2)^2 is least, s and t in [0, 1], and the least.
+    """Return s and t in [0, 1] that minimise |b + t f - a - s e|^2 + c1 (s - 1/2)^2 + c2 (t - 1/2)^2, and the minimum.
 
-    They are the closest points of two segments (Ericson 2005, section 5.1.9), drawn to their middles a little:
-    as parallel segments turn, closest points would jump from end to end.
+    Also returns b + t f - a - s e. The points are the closest of two segments (Ericson 2005, section 5.1.9), drawn
+    slightly to their middles: as parallel segments turn, the closest would jump from end to end.
     """
     r = plus(a, -1.0, b)
     ee, ff, ef = dot(e, e) + c1, dot(f, f) + c2, dot(e, f)
@@ -47,13 +47,13 @@ def closest(a, e, c1, b, f, c2):
 
 @inline
 def overlap(a, e, r1, b, f, r2, is_rod):
-    """Return how deep segments of radii r1 and r2 overlap, n, and s and t of their closest points a + s e and b + t f.
+    """Return the overlap of segments of radii r1 and r2, n, and s and t of their closest points a + s e and b + t f.
 
-    The first is an element, the second another one or the axis of a body.
+    The first is an element, the second another element or the axis of a body.
     """
     s, t, towards, squared = closest(a, e, CENTRING * r1 * r1, b, f, CENTRING * r2 * r2 if is_rod else 0.0)
     d = sqrt(squared)
-    # axes that cross have no direction to part in
+    # axes that intersect have no normal
     return r1 + r2 - d, times(1.0 / d if squared > TINY else 0.0, towards), s, t
 
 
@@ -67,7 +67,7 @@ def normal_force(g, approach, stiffness, damping):
 @inline
 def friction_force(n, u, N, friction, slip_damping):
     """Return the friction on the second, min(c |u_t|, mu N) along u_t, of surfaces whose velocities differ by u."""
-    # n is shorter than one by as much as the points are drawn from where they are closest
+    # n is shorter than one, because the points are drawn away from the closest
     nn = dot(n, n)
     slip = plus(u, -dot(u, n) / nn if nn > 0.0 else 0.0, n)
     speed = norm(slip)

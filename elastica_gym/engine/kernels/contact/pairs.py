@@ -1,4 +1,4 @@
-"""Contact of single pairs, each with its own law: rods on rods, on rigid bodies, and these on planes."""
+"""Contact by pair, each with its own law: rods on rods, rods on rigid bodies, and rigid bodies on planes."""
 
 import numpy as np
 
@@ -26,7 +26,7 @@ def first_row(contacts, one, two):
 
 @inline
 def keep_with_law(contacts, n_neighbours, slots):
-    """Keep the listed pairs of elements of rods that may touch, each with its first row, and return how many."""
+    """Keep the listed pairs whose rods may touch, each with its first row, and return their number."""
     c, kept = contacts, 0
     for a in range(n_neighbours):
         pair = c.neighbours[a]
@@ -40,7 +40,7 @@ def keep_with_law(contacts, n_neighbours, slots):
 
 @inline
 def contact_by_laws(contacts, p, end, low, high, x, v, Q, w, length, radius, force, torque, touch):
-    """Add the forces between two elements by the laws of their rods, the rows from p on and before ``end``."""
+    """Add the forces between two elements by the laws of their rods, in the rows from p to ``end`` - 1."""
     c = contacts
     two = c.rod_of[high]
     while p < end and c.other[p] == two:
@@ -55,13 +55,13 @@ def contact_of_rods(
 ):  # fmt: skip
     """Add the forces between elements of rods that overlap, pair by pair in the order of their slots.
 
-    Returns how many pairs are listed; where there is no room for so many, all there are are tried.
+    Returns the number of listed pairs; if they do not fit in the list, all pairs are tested.
     """
     c, begin, end, reach, last_far, touch = contacts, scratch[0], scratch[1], scratch[2], scratch[3], scratch[4]
     slots = begin.size
     for k in range(slots):
         touch[k] = 0.0
-    # as long as the elements can become until they have strayed
+    # for the longest that the elements can become before the list is rebuilt
     reaches(n, length, radius, 2.0 * c.stray, c.last_other, c.last_clear, reach, last_far)
     n_neighbours, is_new = update_neighbour_list(
         n, c.order, c.neighbours, n_neighbours, neighbour_x, neighbour_reach, c.stray, begin, end, reach, last_far, x
@@ -105,7 +105,7 @@ def contact_with_bodies(contacts, shapes, scratch, x, v, Q, w, length, radius, b
 
 @apart
 def ground_bodies(dt, planes, grounded, friction, shapes, x, v, Q, w, contact, force, torque):
-    """Add what planes do to rigid bodies, after all other loads."""
+    """Add the loads of planes on rigid bodies, after all other loads."""
     for j in range(grounded.size):
         b, c, i, d = grounded[j], grounded[j] + 1, j, j + 1
         one = Cylinders(

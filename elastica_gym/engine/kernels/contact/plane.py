@@ -1,8 +1,8 @@
 """A plane that rods lie on: its response, and anisotropic friction (Gazzola et al. 2018, appendix D).
 
-Forces act on elements, at the point of contact; half goes to each node. The plane answers to the
+Forces act on elements, at the point of contact; half goes to each node. The plane responds to the
 net force, so it comes after every other load. n is the plane's normal, a the in-plane unit tangent
-of the element, b = a x n the direction it rolls in, N the force with which the plane carries it.
+of the element, b = a x n its rolling direction, N the normal force that carries it.
 """
 
 from ...jit.compiler import ONE, inline, stage
@@ -11,7 +11,7 @@ from ..math.roots import inverse_sqrt
 
 @inline
 def static_fraction(speed, inv_tolerance):
-    """Return the static fraction of friction: 1 up to the slip tolerance, falling to 0 at twice of it."""
+    """Return the static fraction of friction: 1 up to the slip tolerance, falling to 0 at twice that."""
     excess = abs(speed) * inv_tolerance - 1.0
     excess = excess if excess > 0.0 else 0.0
     excess = excess if excess < 1.0 else 1.0
@@ -30,7 +30,7 @@ def normal_response(
     first, n, normal, origin, k_plane, nu_plane, surface_tol, surface_part, x, radius, share,
     force, response, damping, carried, axial,
 ):  # fmt: skip
-    """Compute the plane's response to push and penetration, how it damps, N, and a."""
+    """Compute the plane's response to push and penetration, its damping, N, and a."""
     n0, n1, n2 = normal[0], normal[1], normal[2]
     height = n0 * origin[0] + n1 * origin[1] + n2 * origin[2]
     for k in range(first, n):
@@ -49,7 +49,7 @@ def normal_response(
         near = surface_part * r
         near = near if near < surface_tol else surface_tol
         touching = 1.0 if gap <= near else 0.0
-        # a ghost has no section
+        # a ghost has no cross-section
         touching = touching if r > 0.0 else 0.0
         N = -fn if fn < 0.0 else 0.0
         N *= touching
@@ -67,8 +67,8 @@ def slip_velocity(
 ):  # fmt: skip
     """Compute the velocity of the element's lowest point along a and b, and a in the material frame.
 
-    The point moves with the element and with its spin, W x (-r n) . b = -r W . a. Adds to the response
-    what resists the element's velocity along n.
+    The point moves with the element and with its spin, W x (-r n) . b = -r W . a. Also damps the
+    element's velocity along n, in the response.
     """
     n0, n1, n2 = normal[0], normal[1], normal[2]
     for k in range(first, n):
@@ -93,9 +93,9 @@ def kinetic_friction(
 ):  # fmt: skip
     """Compute kinetic friction, opposite to the slip, with the torque of its rolling part.
 
-    Leaves the force on the element, response included, in ``push``, and the most that static friction
-    may be, s mu N (without mu along a, where it depends on the push), in ``static_axial`` and ``static_rolling``;
-    adds N to ``normal_force``. Returns how many elements stick at least in part.
+    Sets ``push`` to the force on the element, response included, and ``static_axial`` and ``static_rolling`` to the
+    bound of static friction, s mu N (without mu along a, where it depends on the push); adds N to ``normal_force``.
+    Returns the number of elements that stick at least in part.
     """
     n0, n1, n2 = normal[0], normal[1], normal[2]
     forward, backward, sideways, static_sideways = mu[0], mu[1], mu[2], mu_static[2]
@@ -130,7 +130,7 @@ def static_friction(
     first, n, normal, mu_static, radius, share, force, axial, axial_material, static_axial, static_rolling,
     push, torque,
 ):  # fmt: skip
-    """Compute static friction from the forces that the response and kinetic friction have already changed.
+    """Compute static friction from the net forces, which include the response and kinetic friction.
 
     Along a it cancels the push, along b it makes the element roll without slip, both up to s mu N.
     """
@@ -153,7 +153,7 @@ def static_friction(
 
         fb = f0 * b0 + f1 * b1 + f2 * b2
         twist = torque[0][k] * m0 + torque[1][k] * m1 + torque[2][k] * m2
-        # a ghost has neither radius nor static friction
+        # a ghost has neither a radius nor static friction
         fb = (fb - 2.0 * twist / (r if r > 0.0 else 1.0)) * (1.0 / 3.0)
         most = static_rolling[k]
         fb = fb if fb < most else most

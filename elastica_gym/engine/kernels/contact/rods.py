@@ -13,13 +13,13 @@ from .law import axis_velocity, friction_force, load, middle, normal_force, over
 
 @stage
 def reaches(n, length, radius, stretch, last_other, last_clear, reach, last_far):
-    """Compute the radius of the ball about each element, and the last slot before it that may touch it.
+    """Compute the radius of each element's bounding sphere, and the last slot before it that may touch it.
 
-    This last one as if the element were longer by ``stretch``.
+    The slot is that of an element longer by ``stretch``.
     """
     for k in range(FIRST, n):
         reach[k] = 0.5 * length[k] + radius[k]
-        # a ghost has neither length nor section
+        # a ghost has neither length nor cross-section
         far = (k - ONE) - NEAR * pi * radius[k] / (length[k] + stretch if length[k] > 0.0 else 1.0)
         far = far if far < last_clear[k] else last_clear[k]
         last_far[k] = far if far > last_other[k] else last_other[k]
@@ -30,9 +30,9 @@ def rods_on_rods(
     n, contact, order, neighbours, n_neighbours, neighbour_x, neighbour_reach, begin, end, reach, last_far, x, v, Q, w,
     length, radius, force, torque, touch,
 ):  # fmt: skip
-    """Add the forces between elements of rods that overlap: of two rods, or of one far enough from each other.
+    """Add the forces between overlapping elements, of two rods or far enough apart along one.
 
-    Adds the normal forces to ``touch``, and returns how many pairs are listed.
+    Adds the normal forces to ``touch``, and returns the number of neighbouring pairs.
     """
     slots = begin.size
     reaches(n, length, radius, 0.0, contact.last_other, contact.last_clear, reach, last_far)
@@ -58,7 +58,7 @@ def rods_on_rods(
                     contact, np.uint64(low), np.uint64(high), x, v, Q, w, length, radius, force, torque, touch
                 )
     else:
-        # no room for so many: all of them, in the same order
+        # they do not fit in the list: test all pairs, in the same order
         for low in range(slots - 1):
             for high in range(low + 1, slots - 1):
                 if low <= last_far[high] and radius[low] > 0.0 and radius[high] > 0.0:

@@ -1,5 +1,5 @@
-"""The features of a Scene, a file each: what the library's step has more than the environments'.
+"""The features of a Scene, one file each: what the library's step adds to the environments'.
 
-Each has an inlined ``apply``, which takes Model, Scene, State and Control whole, and does nothing where the Scene has
-none of the kind.
+Each has an inlined ``apply``, which takes Model, Scene, State and Control whole, and does nothing if the Scene lacks
+the feature.
 """

@@ -7,7 +7,7 @@ from ..sides import join_sides
 
 @inline
 def apply(model, scene, state, control):
-    """Add their loads to those from outside."""
+    """Add their loads to the external loads."""
     s, force, torque = state, control.force[0], control.torque[0]
     if scene.joints.stiffness.size > 0:
         join(scene.joints, s.x[0], s.v[0], s.Q[0], s.w[0], force, torque, s.body_x[0], s.body_v[0], s.body_Q[0],

@@ -1,4 +1,4 @@
-"""Contact of single pairs: rods with rigid bodies, and rods with rods."""
+"""Contact by pair: rods with rigid bodies, and rods with rods."""
 
 from ...jit.compiler import inline
 from ..contact.pairs import contact_of_rods, contact_with_bodies
@@ -7,7 +7,7 @@ from ..layout import end_of, rows
 
 @inline
 def apply(model, scene, state, control):
-    """Add its loads to those from outside."""
+    """Add its loads to the external loads."""
     s, force, torque = state, control.force[0], control.torque[0]
     if scene.body_contacts.body.size > 0:
         bodies = s.body_x[0], s.body_v[0], s.body_Q[0], s.body_w[0], s.body_force[0], s.body_torque[0]

@@ -8,7 +8,7 @@ from ..rod.loads import dead_force, dead_torque
 
 @inline
 def apply(model, scene, state, control):
-    """Add them to the loads from outside."""
+    """Add them to the external loads."""
     loads, n = scene.dead_loads, end_of(model)
     if model.cylinders.mass.size > 0:
         _apply_to_bodies(loads, state.body_Q[0], state.body_force[0], state.body_torque[0])

@@ -1,4 +1,4 @@
-"""Drag on nodes and elements, a part of their velocities."""
+"""Drag on nodes and elements, proportional to velocity."""
 
 from ...jit.compiler import FIRST, inline
 from ..layout import end_of, rows

@@ -7,7 +7,7 @@ from ..rod.loads import wave
 
 @inline
 def apply(model, scene, state, control):
-    """Add them to the loads from outside."""
+    """Add them to the external loads."""
     waves, time = scene.waves, state.time[0]
     for j in range(waves.ramp_time.size):
         first, n = span_of(scene.wave_span[j])

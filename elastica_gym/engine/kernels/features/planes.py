@@ -13,7 +13,7 @@ def apply(model, scene, state, control):
         state.normal_force[0, :] = 0.0
     for j in range(scene.planes.stiffness.size):
         first, n = span_of(scene.plane_span[j])
-        # the first node reads a push from before
+        # the first node reads the push in the slot before
         for d in range(3):
             state.scratch[0, d, first - ONE] = 0.0
         plane_contact(model, state, scene.planes, j, 0, first, n)

@@ -9,7 +9,7 @@ from ..math.vectors import plus, times, vector
 
 @inline
 def apply(model, scene, state, control):
-    """Add them to the loads from outside."""
+    """Add them to the external loads."""
     if scene.point_loads.slot.size > 0:
         _apply(scene.point_loads, state.time[0], control.force[0], state.body_force[0])
 

@@ -1,4 +1,4 @@
-"""The tension that makes the documented loads of strains those of a potential, on the rods that ask for it."""
+"""The tension that makes the documented internal loads derive from a potential, on the rods that enable it."""
 
 from ...jit.compiler import inline
 from ..layout import matrix, rows, span_of
@@ -7,7 +7,7 @@ from ..rod.tension import bend_energy_rates, reciprocate
 
 @inline
 def apply(model, scene, state, control):
-    """Add it to the loads from outside."""
+    """Add it to the external loads."""
     for j in range(scene.tensions.is_closed.size):
         first, last = span_of(scene.tensions.span[j])
         bend_energy_rates(

@@ -1,4 +1,4 @@
-"""Multiplication and addition in one, for where the compiler must not be left to choose which to fuse."""
+"""Fused multiply-add, where the compiler must not choose which operations to fuse."""
 
 from llvmlite import ir
 from numba.core.types import float64
@@ -19,5 +19,5 @@ def _fused(typing_context, a, b, c):
 
 @inline
 def multiply_add(a, b, c):
-    """Return a b + c, rounded once where the CPU can, and else twice."""
+    """Return a b + c, rounded once if the CPU supports it, else twice."""
     return _fused(a, b, c)  # type: ignore[call-arg]  # the compiler adds the first

@@ -1,8 +1,8 @@
 """Inverse roots, faster than the divider's.
 
-A vector square root and a division in double precision keep the divider busy for 35 cycles; half of
-the step was that. Single precision gives 24 bits at once, and one step of third order,
-y + y (e/m + ...) with e the relative residual, all of them.
+A vector square root and a division in double precision keep the divider busy for 35 cycles, which
+was half of the step. Single precision gives 24 bits at once, and one step of third order,
+y + y (e/m + ...) with e the relative residual, gives the rest.
 """
 
 from math import sqrt

@@ -2,7 +2,7 @@
 
 The coefficients are Chebyshev interpolants computed in 60-digit arithmetic; their errors, relative
 to the function, are below 6e-17 over the stated ranges. Powers are summed in two or four parts:
-several short chains of multiply-adds are done in the time of one.
+several short chains of multiply-adds take the time of one.
 """
 
 from ...jit.compiler import inline

@@ -1,4 +1,4 @@
-"""Three components at a time, for physics that comes one body or one contact at a time.
+"""Vectors of three components, for physics computed one body or one contact at a time.
 
 Vectors are tuples of three numbers; Q holds directors as rows, so that Q a is a in the material frame.
 """

@@ -30,8 +30,8 @@ def logarithm(first, n, is_balanced, inv_rest_voronoi_length, cosine, kappa, lev
 
     With theta the angle of the rotation, kappa = -(theta/|a|) a / D^.
 
-    Leaves in ``lever`` what takes a couple from the joint to its elements (see `bending`): kappa D^/2,
-    or, balanced, the same with the tangent of theta/2 for theta/2.
+    Sets ``lever``, which transfers a couple from the joint to its elements (see `bending`): kappa D^/2,
+    or, if balanced, the same with tan(theta/2) in place of theta/2.
     """
     for k in range(first, n):
         a0, a1, a2 = kappa[0][k], kappa[1][k], kappa[2][k]
@@ -49,12 +49,12 @@ def bending(
 ):  # fmt: skip
     """Compute the couples on the elements before and after each joint, and activate the muscles.
 
-    Of tau_L/E^3 and of half of kappa x tau_L D^/E^3 (Gazzola et al. 2018, eq. 2.21), the element before gets
-    the sum and the one after the difference. To be opposite in the lab, the two had to be turned into
-    each other by the joint's angle theta; they are if theta/2, which is |kappa| D^/2, gives way to tan(theta/2).
+    With half of kappa x tau_L D^/E^3 and with tau_L/E^3 (Gazzola et al. 2018, eq. 2.21), the element before gets
+    their sum and the one after their difference. To be opposite in the lab, the two must be rotated into each
+    other by the joint's angle theta; they are if tan(theta/2) replaces theta/2, which is |kappa| D^/2.
 
-    The muscle couple, where there is one, joins tau_L, so it acts equally and oppositely on the two elements
-    it joins. It approaches its target by the fraction ``rate`` a step.
+    The muscle couple, if any, is added to tau_L, so it acts equally and oppositely on the two elements.
+    It approaches its target by the fraction ``rate`` per step.
     """
     for k in range(first, n):
         j = k + ONE

@@ -1,4 +1,4 @@
-"""Damping of velocities at the end of a step, and drag on the way."""
+"""Drag during a step, and damping of velocities at its end."""
 
 from math import exp
 
@@ -52,9 +52,9 @@ def decay_bodies(dt, rate, turn_rate, v, w):
 
 @apart
 def smooth(first, last, order, rate, term):
-    """Take the shortest waves out of one row of velocities, from slot first to last - 1.
+    """Filter the shortest waves out of one row of velocities, from slot first to last - 1.
 
-    What is taken is (-Laplacian/4)^order of them; both ends are left alone.
+    Subtracts (-Laplacian/4)^order of them; both ends are unchanged.
     """
     for k in range(first, last):
         term[k] = rate[k]
@@ -71,7 +71,7 @@ def smooth(first, last, order, rate, term):
 
 @apart
 def smooth_ring(first, last, order, rate, term):
-    """Take the shortest waves out of one row of velocities of a closed rod, as `smooth` does, but without ends."""
+    """Filter the shortest waves out of one row of velocities of a closed rod, as `smooth` does, but without ends."""
     for k in range(first, last):
         term[k] = rate[k]
     for _ in range(order):

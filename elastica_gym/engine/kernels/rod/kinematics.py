@@ -22,7 +22,7 @@ def rotation(a0, a1, a2):
 
 @inline
 def turn(R, q):
-    """Return a column of the directors, turned by R; the order of the sums decides the last bit of all that follows."""
+    """Return a column of the directors, rotated by R; the order of the sums determines results to the last bit."""
     return (
         multiply_add(R[0][2], q[2], multiply_add(R[0][1], q[1], R[0][0] * q[0])),
         multiply_add(R[1][2], q[2], multiply_add(R[1][0], q[0], R[1][1] * q[1])),
@@ -45,7 +45,7 @@ def kinematics(first, n, h, x, v, Q, w):
 
 @stage
 def kinematics_twice(first, n, h, x, v, Q, w):
-    """Do as `kinematics` does twice, to the last bit, in little more time than once."""
+    """Apply `kinematics` twice, equal to the last bit, in little more time than once."""
     for k in range(first, n):
         x[0][k] = multiply_add(h, v[0][k], multiply_add(h, v[0][k], x[0][k]))
         x[1][k] = multiply_add(h, v[1][k], multiply_add(h, v[1][k], x[1][k]))
@@ -58,7 +58,7 @@ def kinematics_twice(first, n, h, x, v, Q, w):
 
 @stage
 def orthonormalise(first, n, Q):
-    """Take rounding out of the directors: one Newton step Q <- (3 I - Q Q^T) Q / 2 to the nearest rotation."""
+    """Remove rounding errors from the directors: one Newton step Q <- (3 I - Q Q^T) Q / 2 to the nearest rotation."""
     for k in range(first, n):
         q00, q01, q02 = Q[0][0][k], Q[0][1][k], Q[0][2][k]
         q10, q11, q12 = Q[1][0][k], Q[1][1][k], Q[1][2][k]

@@ -1,4 +1,4 @@
-"""Loads: what acts on nodes and elements, from inside the rod and from outside."""
+"""Internal and external loads on nodes and elements."""
 
 from math import cos, sin
 
@@ -11,9 +11,9 @@ def balance(
 ):  # fmt: skip
     """Sum the internal loads and gravity (Gazzola et al. 2018, eq. 2.20, 2.21), and the documented damping.
 
-    A node gets the difference of n between its elements, an element the couples of the joints around it:
-    it is the one before the next joint, and after the last. Adds to the torques of strains. The damping, of rods that
-    have any, is nu l times the mean nodal velocity, half of it on each of an element's nodes, and nu_torque l w.
+    A node gets the difference of n between its elements; an element gets, in addition to its own torques,
+    ``before`` of the joint after it and ``after`` of the joint before it. The damping, if any, is nu l times
+    the mean nodal velocity, half of it on each of an element's nodes, and nu_torque l w.
     """
     g0, g1, g2 = gravity[0], gravity[1], gravity[2]
     for k in range(first, n):
@@ -40,7 +40,7 @@ def balance(
 
 @stage
 def external(first, n, applied_force, applied_torque, force, torque):
-    """Add the loads that Control holds."""
+    """Add the external loads in Control."""
     for k in range(first, n):
         force[0][k] += applied_force[0][k]
         force[1][k] += applied_force[1][k]
@@ -68,7 +68,7 @@ def clear_at(slots, force, torque):
 
 @inline
 def external_at(slots, applied_force, applied_torque, force, torque):
-    """Add the loads that Control holds in some slots."""
+    """Add the external loads in Control, in some slots."""
     for j in range(slots.size):
         k = slots[j]
         for d in range(3):

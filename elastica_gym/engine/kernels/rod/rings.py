@@ -1,11 +1,11 @@
-"""Closed rods: the image of the first element at the end follows it, and hands back what it is pushed with."""
+"""Closed rods: the image of the first element, at the end, follows it and passes its loads to it."""
 
 from ...jit.compiler import apart
 
 
 @apart
 def follow(rings, x, v, Q, w):
-    """Put the images where the first two nodes and the first element are."""
+    """Copy the motion of the first two nodes and the first element to their images."""
     for j in range(rings.first.size):
         k = rings.first[j]
         m = k + rings.n_elements[j]
@@ -19,7 +19,7 @@ def follow(rings, x, v, Q, w):
 
 @apart
 def hand_back(rings, force, torque):
-    """Give the first node and element what their images are loaded with."""
+    """Move the loads on the images to the first node and element."""
     for j in range(rings.first.size):
         k = rings.first[j]
         m = k + rings.n_elements[j]

@@ -1,9 +1,9 @@
-"""The tension that makes the documented loads of strains those of a potential.
+"""The tension that makes the documented internal loads derive from a potential.
 
-Couples go with 1/E^3, forces with 1/e and spins with J/e. They are the derivatives, by angles and shear, of
+Couples scale with 1/E^3, forces with 1/e and spins with J/e. They are the derivatives, by angles and shear, of
 tau_L.B^-1 tau_L D^/(2 E^3), tau_L = B (kappa - kappa^), and (sigma - sigma^).S (sigma - sigma^) l^/(2 e), and of the
-Lagrangian's w.J w/(2 e); the tension is what is left, the derivative by length. A muscle couple is part of tau_L, as if
-it shifted kappa^: with the tension of the passive part alone, an arm that muscles hold bent flutters.
+Lagrangian's w.J w/(2 e); the tension is the missing derivative, by length. A muscle couple is part of tau_L, as if it
+shifted kappa^: with the tension of the passive part alone, an arm that muscles hold bent flutters.
 """
 
 from ...jit.compiler import ONE, apart, inline, stage
@@ -41,7 +41,7 @@ def pull(k, x, Q, w, inv_l, rest_length, inv_rest_length, rest_sigma, S, J, befo
 def bend_energy_rates(
     first, n, length, kappa, rest_kappa, rest_voronoi_length, B, inv_B, is_muscular, couple, rate
 ):  # fmt: skip
-    """Compute by how much the energy of each joint falls with its length."""
+    """Compute the rate at which the energy of each joint falls with its length."""
     for k in range(first, n):
         rate[k] = bend_energy_rate(k, length, kappa, rest_kappa, rest_voronoi_length, B, inv_B, is_muscular, couple)
 
