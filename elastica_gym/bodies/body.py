@@ -1,4 +1,4 @@
-"""What every animal has: rods in surroundings, muscles, and sensors."""
+"""The parts of every animal: rods in surroundings, muscles, and sensors."""
 
 import functools
 from collections.abc import Sequence
@@ -19,14 +19,14 @@ from .observation import AXES, Block, single
 
 
 class Sensors(NamedTuple):
-    """Where an animal feels itself: slots of the Model, and scales that make readings of order one."""
+    """The sensors of an animal: slots of the Model, and scales that make readings of order one."""
 
     nodes: Index
-    """Nodes whose position and velocity it feels, (P,) int64"""
+    """Nodes whose position and velocity are observed, (P,) int64"""
     joints: Index
-    """Voronoi points whose curvature and twist it feels, and how the section there has rolled, (J,) int64"""
+    """Voronoi points whose curvature, twist and roll are observed, (J,) int64"""
     skin: Index
-    """Borders of the patches of elements whose contact it feels, (S + 1,) int64"""
+    """Borders of the patches of elements whose contact is observed, (S + 1,) int64"""
     front: Index
     """First and last node of the part that the heading points to, (2,) int64"""
     rear: Index
@@ -40,38 +40,38 @@ class Sensors(NamedTuple):
     curvature_scale: float
     """Unit of curvature [1/m]"""
     weight: float
-    """Weight of the body: with the patches' share of it, the unit of contact [N]"""
+    """Weight of the body; a patch's equal share of it is the unit of contact [N]"""
     fastest: float
     """Speed above which a simulation has diverged, of nodes and objects [m/s]"""
 
 
-# compared by identity: its functions cache what they derive from it
+# compared by identity: functions cache results derived from it
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
-    """An animal in its surroundings. Environments of the same animal share one; it is not to be changed.
+    """An animal in its surroundings. Environments of the same animal share one; do not modify it.
 
     Attributes
     ----------
     name : str
     rods : tuple of Rod
-        Its rods where they were described.
+        Its rods in the pose described.
     cylinders : tuple of Cylinder
         The free objects around it.
     model : Model
     muscles : Muscles
     mirror : Mirror, optional
-        In which it is its own image.
+        The mirror in which it is its own image.
     couples : Array
-        Couple in the slots of the Model by activation [N m], (A, 3, L).
+        Couple in the slots of the Model, for each activation [N m], (A, 3, L).
     sensors : Sensors
     sim_dt : float
-        Time step of the physics unless another is asked for [s].
+        Default time step of the physics [s].
     frame : str
-        What forward and right are, in words.
+        Definition of forward and right, in words.
     order : str
-        The order in which places along the body are counted, in words.
+        The order in which places along the body are numbered, in words.
     settling : float
-        Time in which the body as described comes to rest on the ground [s].
+        Time for the body as described to come to rest on the ground [s].
     """
 
     name: str
@@ -109,7 +109,7 @@ class Body:
 
     @functools.cached_property
     def rest(self) -> State:
-        """State of one such animal at rest on the ground; not to be changed."""
+        """State of one such animal at rest on the ground; do not modify it."""
         state, control = at_rest(self.model, self.rods, cylinders=self.cylinders)
         advance(self.model, state, control, 0, 1, self.sim_dt, round(self.settling / self.sim_dt))
         for moving in (state.v, state.w, state.body_v, state.body_w, state.time, state.step):
@@ -128,34 +128,34 @@ class Body:
         numbered, frame = tuple(map(str, range(patches))), ", ".join(axes)
         blocks = [
             Block("position", each(nodes, axes), -1.0, 1.0, "body length",
-                  f"position of {nodes} nodes, {order}, from the centre of mass: {frame}"),
+                  f"position of {nodes} nodes, {order}, relative to the centre of mass: {frame}"),
             Block("velocity", each(nodes, axes), -20.0, 20.0, "body lengths/s", f"their velocity: {frame} of each"),
             Block("curvature", each(places, ("normal", "binormal", "twist")), -10.0, 10.0, f"{s.curvature_scale:g}/m",
                   f"curvature about the normal and binormal, and twist, at {places} places, {order}"),
             Block("roll", each(places, ("normal", "binormal")), -1.0, 1.0, "1",
-                  "up component of normal and binormal there: how the body has rolled"),
+                  "up component of normal and binormal there: the roll of the body"),
         ]  # fmt: skip
         if self.model.planes.stiffness.size:
-            carried = f"force with which the ground carries each of {patches} parts, {order}"
+            carried = f"normal force of the ground on each of {patches} parts, {order}"
             blocks.append(Block("contact", numbered, 0.0, 50.0, share, carried))
         if self.cylinders:
-            blocks.append(Block("touch", numbered, 0.0, 50.0, share, "force with which objects touch each of them"))
+            blocks.append(Block("touch", numbered, 0.0, 50.0, share, "normal force of objects on each of these"))
         for b in range(len(self.cylinders)):
             thing = f"object/{b}"
             blocks += [
                 Block(f"{thing}/position", axes, -4.0, 4.0, "body length", f"object's centre, from the head: {frame}"),
-                Block(f"{thing}/axis", axes, -1.0, 1.0, "1", f"its axis, from foot to top at the start: {frame}"),
+                Block(f"{thing}/axis", axes, -1.0, 1.0, "1", f"its axis, from base to top at the start: {frame}"),
                 Block(f"{thing}/velocity", axes, -20.0, 20.0, "body lengths/s", f"its velocity: {frame}"),
                 Block(f"{thing}/spin", axes, -50.0, 50.0, "rad/s", f"its angular velocity: about {frame}"),
                 single(f"{thing}/gap", -1.0, 4.0, "body length",
                        "gap between its surface and the animal's, negative where they overlap"),
             ]  # fmt: skip
-        meaning = "activation that each muscle has reached, in the order of the actions"
+        meaning = "current activation of each muscle, in the order of the actions"
         return [*blocks, Block("activation", self.activation_names, -1.0, 1.0, "1", meaning)]
 
 
 def couples_of(muscles: Muscles, rods: Sequence[Rod], model: Model) -> Array:
-    """Return the couple in the slots of a model of these rods, by activation [N m], (A, 3, L)."""
+    """Return the couple in the slots of a model of these rods, for each activation [N m], (A, 3, L)."""
     couples = np.zeros((muscles.n_activations, 3, model.mass.size))
     for number, (rod, start) in enumerate(zip(rods, model.first_slot.tolist(), strict=True)):
         couples[:, :, start : start + rod.n_elements - 1] = couple_matrix(muscles, rod, number)
@@ -163,7 +163,7 @@ def couples_of(muscles: Muscles, rods: Sequence[Rod], model: Model) -> Array:
 
 
 class Pose(NamedTuple):
-    """Where each of B animals is, and whether its simulation is sound."""
+    """The pose of each of B animals, and whether its simulation is sound."""
 
     centre: Array
     """Centre of mass [m], (B, 3)"""
@@ -178,7 +178,7 @@ class Pose(NamedTuple):
     gaps: Array
     """Least distance of each object's surface from the animal's, negative where they overlap [m], (B, C)"""
     sound: Index
-    """1 where all is finite and below the sensors' ``fastest``, else 0, (B,) int64"""
+    """1 if all is finite and speeds are below the sensors' ``fastest``, else 0, (B,) int64"""
 
     def only(self, envs: slice) -> "Pose":
         """Return views of some environments."""
@@ -200,7 +200,7 @@ def make_pose(n_envs: int, n_objects: int) -> Pose:
 
 @stage
 def _command(activations, couples, out):
-    """Write the couples that activations (A,) command into ``out`` (3, L): a third of them acts in each direction."""
+    """Write the couples commanded by activations (A,) into ``out`` (3, L): a third of these act in each direction."""
     slots, third = np.uint64(out.shape[1]), activations.size // 3
     for c in range(3):
         for k in range(slots):
@@ -213,7 +213,7 @@ def _command(activations, couples, out):
 
 @entry
 def activate(couples, activations, out):
-    """Write the couples that activations (B, A) command into ``out`` (B, 3, L), environment by environment."""
+    """Write the couples commanded by activations (B, A) into ``out`` (B, 3, L), environment by environment."""
     for i in range(activations.shape[0]):
         _command(activations[i], couples, out[i])
 
@@ -240,7 +240,7 @@ def _gap(x, radius, slots, centre, axis, length, thickness):
     start, edge = plus(centre, -0.5 * length, axis), times(length, axis)
     least = 1e9
     for k in range(slots):
-        # (a ghost has no section)
+        # a ghost has no cross-section
         if radius[k] > 0.0:
             first = column(x, k)
             way = plus(column(x, k + 1), -1.0, first)
@@ -278,12 +278,12 @@ def _observe_object(model, state, i, b, pose, row, at, inv_length):
 
 @inline
 def _is_sound(model, state, sensors, i):
-    """Return whether all is finite in environment i, and below the sensors' ``fastest``."""
+    """Return whether all is finite in environment i, and speeds are below the sensors' ``fastest``."""
     x, v, w, fastest = state.x[i], state.v[i], state.w[i], sensors.fastest
     sound = True
     for c in range(3):
         for k in range(model.mass.size):
-            # false for what is not a number, too
+            # also false for NaN
             sound &= (abs(v[c, k]) < fastest) & (abs(x[c, k]) < 1e6) & (abs(w[c, k]) < 1e9)
         for b in range(model.cylinders.mass.size):
             sound &= (abs(state.body_v[i, b, c]) < fastest) & (abs(state.body_w[i, b, c]) < 1e9)
@@ -309,7 +309,7 @@ def _locate(model, state, sensors, i, pose):
 
 @inline
 def _read(model, state, levels, sensors, i, pose, row):
-    """Write the readings of environment i, whose animal has been located, and return how many there are."""
+    """Write the readings of environment i, whose pose has been computed, and return their number."""
     n_nodes, n_joints, n_skin = sensors.nodes.size, sensors.joints.size, sensors.skin.size - 1
     inv_length, at = 1.0 / sensors.length, 0
     hx, hz, centre = pose.heading[i, 0], pose.heading[i, 1], vector(pose.centre[i])
@@ -346,17 +346,17 @@ def _read(model, state, levels, sensors, i, pose, row):
 def observe(model, state, levels, sensors, pose, low, high, readings, envs):
     """Compute the pose and the readings (B, R or more) of some environments (E,), in the frame of their headings.
 
-    Readings are clipped to their least and largest values (R or more,). Where the simulation has diverged, pose and
-    readings stay as they were.
+    Readings are clipped to their minimum and maximum values (R or more,). Where the simulation has diverged, pose and
+    readings are left unchanged.
 
-    Readings, with the heading's forward, up and right axes: positions of nodes from the centre of
-    mass in body lengths, their velocities in body lengths a second, curvature and twist in
-    ``curvature_scale``, the up component of normal and binormal there, and the force with which the ground
-    carries each patch of skin, over the weight of an equal share of the body. Where there are objects, the
-    force with which they touch each patch, likewise; and of each its centre from the head in body lengths,
-    axis, velocity in body lengths a second, angular velocity in rad/s, and the gap to the animal's surface
-    in body lengths. Last, the activations that the muscles have reached, ``levels`` (B, A). In a loop over
-    environments rather than in NumPy, whose sums may round differently with the size of the batch.
+    Readings, with the heading's forward, up and right axes: positions of nodes relative to the centre of
+    mass in body lengths, their velocities in body lengths per second, curvature and twist in
+    ``curvature_scale``, the up component of normal and binormal there, and the normal force of the ground on each
+    patch of skin, over the weight of an equal share of the body. With objects, also their force on each
+    patch, likewise; and for each object its centre relative to the head in body lengths, axis, velocity in
+    body lengths per second, angular velocity in rad/s, and the gap to the animal's surface in body lengths.
+    Last, the muscles' current activations, ``levels`` (B, A). Computed in a loop over environments rather
+    than in NumPy, whose sums may round differently with the size of the batch.
     """
     for e in range(envs.size):
         i = envs[e]

@@ -1,6 +1,6 @@
-"""How an animal with two arms touches its object: gaps, and how far round it each arm is wrapped.
+"""The grip of an animal with two arms on its object: gaps, and the angle by which each arm wraps it.
 
-Both are told from where they are, not from forces. Surfaces are those of contact
+Both are computed from positions, not from forces. Surfaces are those of contact
 (`elastica_gym.engine.kernels.contact.cylinders`): an element is its axis swept by a ball of its radius, and so is the
 object.
 """
@@ -22,44 +22,44 @@ from .body import Body
 TOUCH = 0.002
 """Gap up to which surfaces touch [m]"""
 DEEPEST = 0.005
-"""Overlap up to which they do: what is deeper in each other than any contact would allow does not count as touch [m]"""
+"""Overlap up to which surfaces touch; contact forces allow no more, so deeper overlap does not count [m]"""
 
 NEARBY = 0.15
-"""Gap from which on an element is not near the object at all [m]"""
+"""Gap from which an element no longer counts as near the object [m]"""
 
 
 class Grip(NamedTuple):
-    """How each of B animals of E elements touches its first object."""
+    """The grip of each of B animals of E elements on its first object."""
 
     gaps: Array
-    """Least distance of each element's surface from the object's, negative where they overlap [m], (B, E)"""
+    """Distance between each element's surface and the object's, negative where they overlap [m], (B, E)"""
     head_gap: Array
-    """The least of those of the head's elements [m], (B,)"""
+    """The smallest gap of the head's elements [m], (B,)"""
     spans: Array
-    """Angle about the object's axis from the first to the last element of each arm that touches it, followed along
-    the arm [rad], (B, 2)"""
+    """Angle about the object's axis from the first to the last touching element of each arm, followed along the arm
+    [rad], (B, 2)"""
     windings: Array
-    """The same angle of all elements, each part of it times how near they are: 1 where they touch, falling to 0 at a
-    gap of `NEARBY` [rad], (B, 2)"""
+    """The same angle over all elements, each part weighted by proximity: 1 where they touch, falling to 0 at a gap of
+    `NEARBY` [rad], (B, 2)"""
     counts: Index
-    """How many elements of each arm touch it, (B, 2) int64"""
+    """Number of elements of each arm that touch it, (B, 2) int64"""
     base: Array
-    """Centre of the object's base, the end that it stands on at the start [m], (B, 3)"""
+    """Centre of the object's base, the end on which it stands at the start [m], (B, 3)"""
     tilt: Array
     """Angle of its axis from upright [rad], (B,)"""
 
     @property
     def touching(self) -> NDArray[np.bool_]:
-        """Whether each element touches the object, (B, E) bool; none does where any is in it deeper than `DEEPEST`."""
+        """Whether each element touches the object, (B, E) bool; none does if any overlaps it by more than `DEEPEST`."""
         sound = self.gaps.min(axis=1, keepdims=True) >= -DEEPEST
         return sound & (self.gaps <= TOUCH)
 
 
 def grip(body: Body, state: State) -> Grip:
-    """Return how animals, each one rod whose head is between its arms, touch their first object.
+    """Return the grip of animals, each one rod with its head between its arms, on their first object.
 
-    An arm that is in the object deeper than `DEEPEST` anywhere is not counted as touching it at all. An arm's azimuth
-    is that of its elements' centres about the object's axis; from each to the next it turns by less than half a turn.
+    An arm that overlaps the object by more than `DEEPEST` anywhere does not count as touching it. An arm's azimuth is
+    that of its elements' centres about the object's axis; between neighbours it changes by less than half a turn.
     """
     if not body.cylinders:
         raise ValueError(f"body {body.name!r} has no object to grip")
@@ -95,9 +95,9 @@ def grip(body: Body, state: State) -> Grip:
 
 @functools.lru_cache(maxsize=4)
 def arm_elements(body: Body) -> Index:
-    """Return the first element and the last + 1 of each arm, counted along the rod, (2, 2); the head is between.
+    """Return the first element and the last + 1 of each arm along the rod, (2, 2); the head is between.
 
-    Not to be changed.
+    Do not modify the result.
     """
     ends = np.sort([arm[:2] for arm in body.muscles.arms.values()], axis=1) * body.rods[0].n_elements
     return np.round(ends).astype(np.int64)
@@ -107,7 +107,7 @@ def arm_elements(body: Body) -> Index:
 def _measure(x, radius, slot, arms, body_x, body_Q, length, thickness, gaps, spans, windings, counts):
     """Compute the gaps of all elements, and the span, winding and count of each arm, environment by environment.
 
-    The first element is in a slot of the Model.
+    ``slot`` is the slot of the first element in the Model.
     """
     for i in range(x.shape[0]):
         centre, axis = vector(body_x[i, 0]), vector(body_Q[i, 0, 2])

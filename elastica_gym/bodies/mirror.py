@@ -1,4 +1,4 @@
-"""Animals are their own mirror images: what their numbers become in the mirror."""
+"""The mirror symmetry of animals: how their observations and actions transform under it."""
 
 from dataclasses import dataclass
 
@@ -7,26 +7,27 @@ import numpy as np
 from ..engine.model import Array, Index
 
 COUNTED = ("position", "velocity", "curvature", "roll", "contact", "touch")
-"""Readings that are counted along the body"""
+"""Readings that are numbered along the body"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mirror:
-    """A mirror that stands upright in an animal's middle.
+    """A vertical mirror through an animal's middle.
 
-    Of vectors, it changes the sign of the component across it; of what turns, such as angular velocity, that of the
-    others. Couples, curvature and roll follow from the frames of the rod: mirrored, a frame is made right-handed by
-    turning its tangent round where the rod is then counted from the other end, and its binormal where it is not.
+    It changes the sign of a vector's component across it, and of a pseudovector's, such as angular velocity, other
+    components. Couples, curvature and roll follow from the frames of the rod: a mirrored frame is made right-handed
+    by reversing its tangent if the rod is then numbered from the other end, else its binormal.
 
     Attributes
     ----------
     across : str
         The axis of the heading's frame that is across the mirror: forward or right.
     arms : tuple of str
-        The two arms that it exchanges, counting the rod from the other end; empty where it exchanges none.
+        The two arms that it exchanges, numbering the rod from the other end; empty if it exchanges none.
     is_later : bool
-        Whether the image feels the clock half a period later. What undulates bends to one side and half a period later
-        to the other, so it is its own image in such a mirror only; in one without, what is straight must stay straight.
+        Whether the image observes the clock half a period later. An undulating body bends to one side and half a period
+        later to the other, so only such a mirror leaves it unchanged; without the delay, a straight body must stay
+        straight.
     """
 
     across: str
@@ -34,7 +35,7 @@ class Mirror:
     is_later: bool = False
 
     def image(self, names: tuple[str, ...]) -> tuple[Index, Array]:
-        """Return where the mirror image has each number, and with which sign.
+        """Return the index and the sign of each number's mirror image.
 
         Parameters
         ----------
@@ -51,7 +52,7 @@ class Mirror:
         return index, np.array([-1.0 if self._is_turned(name) else 1.0 for name in names])
 
     def _twin(self, name: str, names: tuple[str, ...]) -> str:
-        """Return the name of what the mirror shows in place of a number."""
+        """Return the name of a number's mirror image."""
         if not self.arms:
             return name
         parts = name.split("/")

@@ -1,4 +1,4 @@
-"""Muscles: activations in [-1, 1] in, couples along the body out.
+"""Muscles: from activations in [-1, 1] to couples along the body.
 
 A body has *arms* (a snake's are its front and rear half). In each of three directions, about the normal, the
 binormal and the tangent, an arm carries a hierarchy of Gaussian basis functions: level j has 2^j of them, so
@@ -26,19 +26,19 @@ FIT_ITERATIONS = 1000
 
 
 class Arm(NamedTuple):
-    """Where an arm lies."""
+    """The place of an arm along a rod."""
 
     begin: float
-    """As a part of the rod's length"""
+    """As a fraction of the rod's length"""
     end: float
-    """Likewise; an arm whose begin is beyond its end runs backwards"""
+    """Likewise; an arm that begins beyond its end runs backwards"""
     rod: int = 0
     """Number of the rod among the body's"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Muscles:
-    """The strength and speed of a body's muscles, and where its arms lie.
+    """The strength and speed of a body's muscles, and the places of its arms.
 
     Attributes
     ----------
@@ -59,11 +59,11 @@ class Muscles:
 
     @property
     def n_activations(self) -> int:
-        """Number of activations A: 21 an arm."""
+        """Number of activations A: 21 per arm."""
         return len(DIRECTIONS) * len(self.arms) * N_FUNCTIONS
 
     def columns(self, direction: str, arm: str) -> Index:
-        """Return where the activations of an arm in a direction are in an action, (7,); the next arm's come after."""
+        """Return the indices in an action of an arm's activations in a direction, (7,); the next arm's follow."""
         first = (DIRECTIONS.index(direction) * len(self.arms) + list(self.arms).index(arm)) * N_FUNCTIONS
         return np.arange(first, first + N_FUNCTIONS)
 
@@ -89,11 +89,12 @@ SNAKE = Muscles(
     arms={"front": Arm(1.0, 0.5), "rear": Arm(0.5, 0.0)},
     activation_time=0.06,
 )
-"""The snake's: its arms are the front and the rear half, each from the head's side.
+"""The snake's muscles: its arms are the front and the rear half, each beginning at the head's side.
 
 Where all three levels act, bending reaches 5.5 mN m, enough to play the published travelling wave of 3.5 mN m along
-most of the body. What lifts and twists is weaker: enough to shift weight from one part of the body to another, not to
-throw it off the ground. With all equally strong, exploration is mostly thrashing, and learning takes twice as long."""
+most of the body. Lifting and twisting muscles are weaker: enough to shift weight from one part of the body to
+another, not to throw it off the ground. With equal strength, exploration is mostly thrashing, and learning takes
+twice as long."""
 
 OCTOPUS = Muscles(
     magnitudes={"normal": (5.2, 4.16, 3.12), "binormal": (5.2, 4.16, 3.12), "tangent": (3.12, 2.08, 1.04)},
@@ -101,8 +102,9 @@ OCTOPUS = Muscles(
     arms={"first": Arm(50.0 / 120.0, 0.0), "second": Arm(70.0 / 120.0, 1.0)},
     activation_time=0.06,
 )
-"""The octopus's: its arms begin at the head. The widths of the 2020 hackathon, and 0.52 of its couples: then all of
-one direction of bending curl an arm by 1.2 turns. More would close its bends so far that their inside vanishes."""
+"""The octopus's muscles: its arms begin at the head. They have the widths of the 2020 hackathon and 0.52 of its
+couples: at full activation in one bending direction, an arm curls by 1.2 turns. Stronger couples would bend it so
+tightly that the inside of the bend vanishes."""
 
 
 def basis(s: Array, widths: tuple[float, float, float]) -> Array:
@@ -120,14 +122,14 @@ def basis(s: Array, widths: tuple[float, float, float]) -> Array:
         for count, width in zip(LEVELS, widths, strict=True)
         for i in range(count)
     ]
-    # a joint at an arm's border is in it, whatever rounding makes of its place
+    # a joint at an arm's border belongs to the arm, despite rounding
     return np.array(rows) * ((s > -1e-9) & (s < 1.0 + 1e-9))
 
 
 def couple_matrix(muscles: Muscles, rod: Rod, number: int = 0) -> Array:
-    """Return the couple at each Voronoi point of a rod that each activation causes at 1 [N m], (A, 3, n - 1).
+    """Return the couple at each Voronoi point of a rod for each activation at 1 [N m], (A, 3, n - 1).
 
-    The couple of the direction normal, binormal and tangent is the component along d1, d2 and d3.
+    The couples about normal, binormal and tangent are the components along d1, d2 and d3.
 
     Parameters
     ----------
@@ -148,22 +150,22 @@ def couple_matrix(muscles: Muscles, rod: Rod, number: int = 0) -> Array:
 
 
 def activations_for(couple: Array, matrix: Array, direction: str = "normal") -> Array:
-    """Return the activations in [-1, 1] whose couples come nearest to wanted profiles.
+    """Return the activations in [-1, 1] whose couples are closest to wanted profiles.
 
     Parameters
     ----------
     couple : Array
         Wanted couples about one direction at Voronoi points [N m], (m, n - 1).
     matrix : Array
-        What `couple_matrix` returns, (A, 3, n - 1).
+        The result of `couple_matrix`, (A, 3, n - 1).
     direction : str
         One of `DIRECTIONS`; the activations of the others are zero.
 
     Returns
     -------
     Array
-        (m, A), nearest in the sense of least squares within the bounds: by Nesterov's accelerated projected gradient
-        (Introductory Lectures on Convex Optimization, 2004, section 2.2.4), all profiles at once.
+        (m, A), the least-squares fit within the bounds, by Nesterov's accelerated projected gradient
+        (Introductory Lectures on Convex Optimization, 2004, section 2.2.4), for all profiles at once.
     """
     d = DIRECTIONS.index(direction)
     chosen = np.arange(len(matrix)).reshape(len(DIRECTIONS), -1)[d]

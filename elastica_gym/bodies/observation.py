@@ -1,4 +1,4 @@
-"""Observations, declared once: named blocks of numbers, from which layout, names, bounds and documentation follow."""
+"""Observations, declared once as named blocks of numbers that define layout, names, bounds and documentation."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -10,17 +10,17 @@ class Block(NamedTuple):
     """Numbers of an observation that belong together."""
 
     name: str
-    """Such as ``position``"""
+    """Name of the block, such as ``position``"""
     parts: tuple[str, ...]
     """Name of each number within the block, such as ``0/forward``; one empty name for a block of a single number"""
     low: float
-    """Least value; what is below it is clipped"""
+    """Least value, to which lower ones are clipped"""
     high: float
     """Largest value"""
     unit: str
-    """Unit of the numbers, 1 where they have none"""
+    """Unit of the numbers, 1 if dimensionless"""
     meaning: str
-    """What they are, in words"""
+    """Description of the numbers"""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -29,7 +29,7 @@ class Block(NamedTuple):
 
 
 AXES = ("forward", "up", "right")
-"""Of the frame of the heading"""
+"""Axes of the heading's frame"""
 
 
 def single(name: str, low: float, high: float, unit: str, meaning: str) -> Block:
@@ -38,7 +38,7 @@ def single(name: str, low: float, high: float, unit: str, meaning: str) -> Block
 
 
 class Layout:
-    """Where an observation has its blocks.
+    """The layout of an observation in blocks.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Layout:
         Raises
         ------
         KeyError
-            If there is none of that name.
+            If there is no block of that name.
         """
         if name not in self._columns:
             raise KeyError(f"there is no block {name!r}; there are {', '.join(self._columns)}")

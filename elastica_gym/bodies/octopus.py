@@ -1,12 +1,12 @@
-"""The octopus with two soft arms of the 2020 Cosserat-rod hackathon, and the object it works on.
+"""The octopus with two soft arms of the 2020 Cosserat-rod hackathon, and the object it handles.
 
 One rod of 1 m, 121 nodes: the first arm up to node 49, the head from 50 to 70, the second arm from
 71. y is up. At rest the head's axis is along +z, both arms are kinked 30 degrees from it, and their
-tips point towards +x. The arms are as thick as a wrist, the head is a ball of 0.25 m that rests on
-the ground on its own surface: the arms come down to the ground from the height of its middle.
+tips point towards +x. The arms are as thick as a wrist; the head is a ball of 0.25 m in diameter
+that rests on the ground, and the arms descend to the ground from the height of its middle.
 
-Friction with the ground is the same in all directions, so nothing slides more easily one way than
-another, and the head is most of the weight: the animal moves by taking weight off what it moves.
+Friction with the ground is isotropic, so no direction is easier to slide in, and the head is most of
+the weight: to move a part of its body, the animal has to take weight off it.
 """
 
 import functools
@@ -31,9 +31,9 @@ TIP_RADIUS, BASE_RADIUS, HEAD_RADIUS = 0.025, 0.03, 0.125
 KINK = np.pi / 6.0
 """Angle between each arm and the head's axis, seen from above [rad]"""
 KINK_ELEMENTS = 8
-"""Elements over which it turns"""
+"""Number of elements over which the rod turns by this angle"""
 DESCENT = 0.25
-"""Length along the rod in which it comes down from the head's middle to the ground [m]"""
+"""Length along the rod over which it descends from the head's middle to the ground [m]"""
 BEYOND_DESCENT = 95
 """An element of the second arm that lies on the ground"""
 DENSITY = 1000.0
@@ -45,16 +45,16 @@ STATIC_FRICTION = 2.04
 DAMPING_RATE = 2.0
 """Uniform damping [1/s]"""
 TORQUE_VISCOSITY = 0.2
-"""Torque against angular velocity, per length [kg m/s]: 310 to 650 1/s along the arms and half of it for
-twist, 1 1/s at the head's middle"""
+"""Torque per angular velocity and length [kg m/s]: a damping rate of 310 to 650 1/s along the arms, half of
+that for twist, and 1 1/s at the head's middle"""
 SIM_DT = 1.25e-4
-"""Time step [s]: at 160 microseconds 3 of 16 diverge within 3 s of full strength whose signs change every 0.4 s; at
-125 none does"""
+"""Time step [s]: at 160 microseconds, 3 of 16 diverge within 3 s at full activation with signs changing every 0.4 s;
+at 125, none does"""
 
 OBJECT_LENGTH, OBJECT_RADIUS, OBJECT_MASS = 0.6, 0.05, 4.0
 OBJECT_FRICTION = 0.4
 SKIN = Contact(stiffness=6e4, damping=20.0, friction=OBJECT_FRICTION, slip_damping=25.0)
-"""How arms and head touch the object, each other and themselves"""
+"""Contact of arms and head with the object, each other and themselves"""
 
 
 def radii() -> Array:
@@ -69,7 +69,7 @@ def nodes() -> Array:
     """Return the nodes at rest [m], (3, 121), the head's middle above the origin."""
     from_middle = (np.arange(N_ELEMENTS) + 0.5 - MIDDLE) * LENGTH / N_ELEMENTS
     outwards, side = np.abs(from_middle), np.sign(from_middle)
-    # seen from above, from along the head's axis to the arms' direction
+    # seen from above, the angle from the head's axis to the arms' direction
     base, turn = (HEAD[1] - MIDDLE) * LENGTH / N_ELEMENTS, KINK_ELEMENTS * LENGTH / N_ELEMENTS
     yaw = KINK * np.clip((outwards - base) / turn + 0.5, 0.0, 1.0)
     bell = np.sin(np.pi * np.minimum(outwards / DESCENT, 1.0)) ** 2
@@ -85,7 +85,7 @@ def nodes() -> Array:
         centres = 0.5 * (path(steepest)[1, 1:] + path(steepest)[1, :-1])
         return float((centres - radii())[BEYOND_DESCENT])
 
-    # imported here: it takes longer than all else that `import elastica_gym` does
+    # imported here: it takes longer than the rest of `import elastica_gym`
     from scipy.optimize import brentq
 
     return path(brentq(clearance, 0.1, 1.5))
@@ -93,12 +93,12 @@ def nodes() -> Array:
 
 @functools.cache
 def octopus() -> Body:
-    """Return the octopus on the plane y = 0, with its object 0.4 m before its head.
+    """Return the octopus on the plane y = 0, with its object 0.4 m in front of its head.
 
-    Full activation of one direction of bending curls a free arm by 427 degrees, and an arm that has the object in
-    its bend holds it, wrapped by more than 200 degrees (`tests/bodies/test_octopus.py`). What sticks creeps by the
-    force over ``SKIN``'s slip damping and the number of elements in contact: some centimetres a second for an object
-    that is dragged.
+    Full activation in one bending direction curls a free arm by 427 degrees, and an arm with the object in its bend
+    holds it, wrapped by more than 200 degrees (`tests/bodies/test_octopus.py`). Sticking contacts creep at the force
+    over ``SKIN``'s slip damping and the number of elements in contact: some centimetres per second for a dragged
+    object.
     """
     limp = Rod.through(
         nodes(),

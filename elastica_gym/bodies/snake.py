@@ -3,10 +3,10 @@
 A rod of 0.35 m, of 1,000 kg/m^3 and 1 MPa, lies on a plane whose Coulomb friction is 1 : 1.5 : 2
 forward, backward and sideways, in gravity. Its head is the last node: forward is along the tangent.
 
-Damping is the original's: 0.0001 kg/(m s) against velocity, which is next to nothing, and as many
-kg m/s against angular velocity, which is 580 1/s for a thin rod. The second is what keeps strong
-random actions from shaking the body until the simulation breaks; a uniform damping of all velocities
-would have to be so strong (10 1/s) that it halves the speed of every gait.
+Damping is the original's: 0.0001 kg/(m s) against velocity, which is negligible, and 0.0001 kg m/s
+against angular velocity, which is 580 1/s for a thin rod. The second keeps strong random actions
+from shaking the body until the simulation diverges; a uniform damping of all velocities would have
+to be so strong (10 1/s) that it halves the speed of every gait.
 """
 
 import functools
@@ -28,20 +28,20 @@ GRAVITY = 9.80665
 FROUDE = 0.1
 PERIOD = 2.0
 FRICTION = LENGTH / (PERIOD**2 * GRAVITY * FROUDE)
-"""Coefficient of friction forward; backward it is 1.5 and sideways 2 times as much"""
+"""Coefficient of friction forward; backward it is 1.5 times, sideways 2 times as large"""
 VISCOSITY = 1e-4
 """Damping force per velocity and length [kg/(m s)], and torque per angular velocity and length [kg m/s]"""
 GROUND_STIFFNESS, GROUND_DAMPING = 1e4, 0.5
-"""Of each element on the ground [N/m, N s/m]: what strikes at full strength goes in by a sixteenth of the radius. The
+"""Per element on the ground [N/m, N s/m]: impact at full strength penetrates by a sixteenth of the radius. The
 published planar case has 1 N/m and 1e-6 N s/m; a snake that lifts sinks through that, and the ground's reaction, which
-cancels what pushes into it also where it is left, adds 10 % to the muscles' work (4 % at 100 N/m and 0.01 N s/m, none
-here; `scripts/audit_energy.py`)."""
+cancels forces into the ground even during lift-off, adds 10 % to the muscles' work (4 % at 100 N/m and 0.01 N s/m,
+none here; `scripts/audit_energy.py`)."""
 SKIN = Contact(stiffness=2e3, damping=0.1, friction=FRICTION, slip_damping=0.1)
-"""How it touches itself. Without, the gait that learning found passed through itself in 5 % of control steps."""
+"""Self-contact. Without it, a learned gait passed through itself in 5 % of control steps."""
 SIM_DT = 1.1e-4
-"""Largest time step, in tens of microseconds, at which fewer than 1 of 10,000 control steps diverge under random
-actions [s]: none of 100,000 does. At 113 microseconds none of 15,000 did, at 116 all; the undeformed rod is stable
-below 117. Count with scripts/count_divergence.py."""
+"""Largest time step, to 10 microseconds, at which fewer than 1 of 10,000 control steps diverge under random actions
+[s]: none of 100,000 does. At 113 microseconds none of 15,000 did, at 116 all; the undeformed rod is stable below 117.
+Count with scripts/count_divergence.py."""
 
 
 @functools.cache
@@ -51,7 +51,7 @@ def snake(n_elements: int = 50) -> Body:
     Parameters
     ----------
     n_elements : int
-        At least 16, so that every part of the body has something to feel.
+        At least 16, so that every part of the body has a sensor.
 
     Raises
     ------
