@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from ..viz.frames import Image
 
 CONTROL_DT = 0.05
-"""Duration of a control step unless another is asked for [s]"""
+"""Default duration of a control step [s]"""
 RENDER_MODES = ("rgb_array",)
-"""Ways to draw; of one animal, Gymnasium's wrappers show or collect the pictures"""
+"""Supported render modes; for a single animal, Gymnasium's wrappers show or collect the pictures"""
 
 PHYSICAL_STATE = (
     "x",
@@ -51,14 +51,14 @@ PHYSICAL_STATE = (
     "body_touch",
     "rod_touch",
 )
-# the lists of pairs that may touch are not: they are checked against the positions, and any of them gives the same
+# neighbour lists are left out: they are checked against the positions, and any valid list gives the same result
 
 
 Observations = NDArray[np.float32]
 
 
 class BatchEnv(VectorEnv):
-    """A batch of animals, each at its own task.
+    """A batch of animals, each performing the task.
 
     Made by ``gymnasium.make_vec("elastica_gym/<Name>-v1", num_envs=...)``.
 
@@ -70,34 +70,33 @@ class BatchEnv(VectorEnv):
     control_dt : float
         Duration of a control step [s].
     sim_dt : float, optional
-        Largest time step of the physics [s]; a control step takes as few equal ones as fit. By
-        default the body's, which holds the bound on divergence.
+        Largest time step of the physics [s]; a control step is divided into as few equal ones as possible.
+        By default the body's, which keeps divergence rare.
     duration : float, optional
-        Simulated time of an episode [s], to the nearest control step; by default the task's. The observed part of the
-        episode that is left refers to it.
+        Simulated time of an episode [s], to the nearest control step; by default the task's. The observation
+        ``time_left`` refers to it.
     max_episode_steps : int, optional
         Control steps after which an episode is truncated, if ``duration`` does not end it earlier: as with
-        ``gymnasium.make``, it changes nothing that is observed. None and -1 leave it to ``duration``.
+        ``gymnasium.make``, observations do not depend on it. None and -1 leave it to ``duration``.
     n_threads : int, optional
-        Threads that share the environments; by default as many as there are CPUs to run on. Results
-        do not depend on it.
+        Threads that share the environments; by default one per available CPU. Results do not depend on it.
     autoreset_mode : AutoresetMode
-        What becomes of an environment whose episode has ended.
+        How an environment is reset after its episode has ended.
     weights : dict of str to float, optional
         Weights of reward terms that differ from the task's.
     spread : str, optional
-        How the task draws its starts: one of ``task.initial_states``, by default the first.
+        Distribution of initial states: one of ``task.initial_states``, by default the first.
     body_kwargs : dict, optional
-        Passed to the function that makes the body, as ``n_elements`` of the snake.
+        Passed to the function that makes the body, such as ``n_elements`` for the snake.
     render_mode : str, optional
         ``"rgb_array"``, with which `render` draws pictures.
     render_size : tuple of int
-        Their width and height [pixels].
+        Width and height of the pictures [pixels].
 
     Raises
     ------
     ValueError
-        If an argument cannot be, or ``sim_dt`` is above the stable time step.
+        If an argument is invalid, or ``sim_dt`` is above the stable time step.
     """
 
     def __init__(
@@ -163,13 +162,13 @@ class BatchEnv(VectorEnv):
         except ValueError as error:
             raise ValueError(f"sim_dt: {error}") from None
         self.control_dt = control_dt
-        # a hair less, so that rounding in the quotient costs no extra step
+        # slightly less, so that rounding in the quotient costs no extra step
         self.n_substeps = max(1, int(np.ceil(control_dt / sim_dt - 1e-9)))
         self.sim_dt = control_dt / self.n_substeps
         self._n_steps = max(1, round(duration / control_dt))
         self.duration = self._n_steps * control_dt
         self.max_episode_steps = self._n_steps
-        # -1 is Gymnasium's word for no limit
+        # in Gymnasium, -1 means no limit
         if max_episode_steps not in (None, -1):
             _require_count("max_episode_steps", max_episode_steps, 2**31 - 1)
             self.max_episode_steps = min(self._n_steps, max_episode_steps)
@@ -222,20 +221,20 @@ class BatchEnv(VectorEnv):
         Parameters
         ----------
         seed : int or sequence of int, optional
-            An integer s seeds environment i with s + i. Without, the generators go on; at the first reset they
-            are seeded from the operating system.
+            An integer s seeds environment i with s + i. If omitted, the existing generators continue; at the first
+            reset, they are seeded by the operating system.
         options : dict, optional
             ``{"reset_mask": (B,) bool}`` resets only where it is true.
 
         Returns
         -------
         tuple
-            Observations (B, d) and an info with the keys of `step`, of the episodes that begin.
+            Observations (B, d) and an info of the new episodes, with the keys of `step`.
 
         Raises
         ------
         ValueError
-            If there is another option, or the mask would leave an environment without a start.
+            If there is another option, or the first reset leaves out an environment.
         """
         mask = _reset_mask(options or {}, self.num_envs)
         if self._generators is None and not mask.all():
@@ -251,8 +250,8 @@ class BatchEnv(VectorEnv):
     def step(self, actions: Array) -> tuple[Observations, Array, Mask, Mask, dict[str, Any]]:
         """Advance every environment by one control step.
 
-        Where an episode has ended and there is no automatic reset, stepping on goes on with the physics, and what
-        it returns has no meaning.
+        If an episode has ended and there is no automatic reset, further steps continue the physics, and their results
+        have no meaning.
 
         Parameters
         ----------
@@ -264,12 +263,12 @@ class BatchEnv(VectorEnv):
         tuple
             Observations (B, d), rewards (B,), terminated (B,), truncated (B,) and info, arrays over the batch:
             ``reward_<term>``, ``distance``, ``is_success`` and ``termination_reason``, a `TerminationReason` or the
-            place of a failure of the task in ``termination_reasons``.
+            index of one of the task's failures in ``termination_reasons``.
 
         Raises
         ------
         ValueError
-            If the actions have another shape or are not numbers.
+            If the actions have the wrong shape or contain NaN.
         """
         if self._generators is None:
             raise RuntimeError("call reset before step")
@@ -298,48 +297,46 @@ class BatchEnv(VectorEnv):
         return self._observations.copy(), rewards, terminated, truncated, info
 
     def render(self) -> "tuple[Image, ...] | None":
-        """Draw every environment as it is now; see `elastica_gym.viz.View`.
+        """Draw the current state of every environment; see `elastica_gym.viz.View`.
 
         Returns
         -------
         tuple of Image, or None
-            For each environment (height, width, 3) uint8; nothing, but a warning, without a ``render_mode``.
+            For each environment (height, width, 3) uint8; without a ``render_mode``, None and a warning.
 
         Raises
         ------
         ImportError
             If MuJoCo is not installed.
         RuntimeError
-            If there was no reset, or MuJoCo finds nothing to draw with.
+            If there was no reset, or MuJoCo has no graphics library.
         """
         if self.render_mode is None:
-            logger.warn(
-                "render draws nothing where no render_mode was given: make the environment with render_mode='rgb_array'"
-            )
+            logger.warn("render draws nothing without a render_mode: make the environment with render_mode='rgb_array'")
             return None
         if self._generators is None:
             raise RuntimeError("call reset before render")
         if self._view is None:
-            # what draws is imported by those who draw
+            # imported only when rendering
             from ..viz import View
 
             self._view = View(self)
         return self._view.draw()
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Close what draws; nothing else is held open, for threads belong to the process."""
+        """Close the renderer; nothing else is open, as threads belong to the process."""
         if self._view is not None:
             self._view.close()
         self._view = None
 
     def __getstate__(self) -> dict[str, Any]:
-        # copies, here or in another process, make a view of their own
+        # a copy, here or in another process, creates its own view
         return {**self.__dict__, "_view": None}
 
     # one control step
 
     def _command(self, actions: Array, ignored: Mask) -> None:
-        """Set the activations to what the actions ask for, and to zero where these are ignored."""
+        """Set the activations to the actions, and to zero where these are ignored."""
         values = np.array(actions, dtype=np.float64)
         if values.shape != self.action_space.shape:
             raise ValueError(f"actions must have shape {self.action_space.shape}, not {values.shape}")
@@ -355,24 +352,24 @@ class BatchEnv(VectorEnv):
             old[...] = new
         self._progress_before[:] = self.progress
         activate(self.body.couples, self.activations, self.control.couple)
-        # the physics does the same to couples, in n_substeps parts
+        # the physics does the same with couples, in n_substeps parts
         tau = self.body.muscles.activation_time
         self.levels += (self.activations - self.levels) * (1.0 - np.exp(-self.control_dt / tau))
         self.elapsed += 1
         self.integrator.advance(self.num_envs, self.sim_dt, self.n_substeps, self._sense)
 
     def _follow(self, now: Situation, where: Mask) -> None:
-        """Follow the episodes of some environments."""
+        """Update the progress of some environments."""
         for column, value in zip(self.progress.T, self.task.follow(now, self.state), strict=True):
             np.copyto(column, value, where=where)
 
     @property
     def observations(self) -> Observations:
-        """What the animals sense now, (B, d)."""
+        """Current observations, (B, d)."""
         return self._observations.copy()
 
     def situation(self) -> Situation:
-        """Return where the batch stands."""
+        """Return the current situation of the batch."""
         left = np.maximum(1.0 - self.elapsed / self._n_steps, 0.0)
         return Situation(
             self.pose,
@@ -387,7 +384,7 @@ class BatchEnv(VectorEnv):
         )
 
     def _compute_rewards(self, now: Situation, sound: Mask) -> tuple[Array, dict[str, Any]]:
-        """Return the rewards and an info with each of their terms; where physics has failed, only the penalty."""
+        """Return the rewards and an info with each term; where the simulation has diverged, only the penalty."""
         rewards, info = np.zeros(self.num_envs), {}
         for name, term in self.task.reward_terms.items():
             value = np.where(sound, self.weights[name] * term(now), 0.0)
@@ -401,20 +398,20 @@ class BatchEnv(VectorEnv):
         return rewards, info
 
     def _reasons(self, ends: dict[str, Mask]) -> NDArray[np.int64]:
-        """Return the place of each reason to end in ``termination_reasons``, (B,); of several reasons the last."""
+        """Return the index of each termination reason in ``termination_reasons``, (B,); of several, the last."""
         reasons = np.full(self.num_envs, TerminationReason.RUNNING, dtype=np.int64)
         for name, ended in ends.items():
             reasons[ended] = self.termination_reasons.index(name)
         return reasons
 
     def _observe(self, now: Situation, where: Mask) -> None:
-        """Write what some environments observe beside what is felt; the others keep what they observed last."""
+        """Write clock, time left and goal to the observations of some environments; the others keep their last ones."""
         angle = 2.0 * np.pi / CLOCK_PERIOD * self.control_dt * self.elapsed
         goal = self.task.observe_goal(now)
         wanted = (self.num_envs, len(self.task.goal_layout.names))
         if goal.shape != wanted:
             raise ValueError(
-                f"observe_goal of {self.task.name} must return {wanted}, as goal_blocks says, not {goal.shape}"
+                f"observe_goal of {self.task.name} must return {wanted}, as in goal_blocks, not {goal.shape}"
             )
         columns = np.concatenate(
             [np.sin(angle)[:, None], np.cos(angle)[:, None], now.time_left[:, None], goal], axis=1, dtype=np.float32
@@ -439,7 +436,7 @@ class BatchEnv(VectorEnv):
             self._generators[i], self._seeds[i] = generator, used
 
     def _start(self, mask: Mask) -> None:
-        """Draw new episodes where the mask is true, and observe them."""
+        """Start new episodes where the mask is true, and observe them."""
         assert self._generators is not None
         begun = np.flatnonzero(mask)
         self.control.couple[begun] = 0.0
@@ -450,7 +447,7 @@ class BatchEnv(VectorEnv):
             levels = self._sample_initial_state(self._generators[i], self.body, self.state, i)
             if levels is not None:
                 self.activations[i] = self.levels[i] = levels
-            # a step of no duration moves nothing, and computes curvature and contact for the sensors
+            # a step of zero duration moves nothing, but computes curvature and contact for the sensors
             advance(self.body.model, self.state, self.control, i, i + 1, 0.0, 1)
             self.state.step[i] = 0
         self._sense(begun)
@@ -466,7 +463,7 @@ class BatchEnv(VectorEnv):
         self._observe(now, mask)
 
     def _first_info(self) -> dict[str, Any]:
-        """Return the info of episodes that have just begun: the keys of every step, and nothing earned yet."""
+        """Return the info of new episodes: the keys of every step, with zero rewards."""
         n = self.num_envs
         return {
             **{f"reward_{name}": np.zeros(n) for name in self.weights},
@@ -476,12 +473,12 @@ class BatchEnv(VectorEnv):
         }
 
     def _begin_info(self, begun: Mask, info: dict[str, Any]) -> None:
-        """Write the info of episodes that have just begun over that of the environments' last step."""
+        """Overwrite the info of the last step with that of the episodes that have just begun."""
         for name, first in self._first_info().items():
             info[name][begun] = first[begun]
 
     def _restart(self, ended: Mask, info: dict[str, Any]) -> dict[str, Any]:
-        """Begin new episodes where old ones ended, which keep their last observation in the info (SAME_STEP)."""
+        """Start new episodes where old ones ended, with the last observation in the info (SAME_STEP)."""
         aside = {name: value.copy() for name, value in info.items()}
         final = {"final_obs": self._observations.copy(), "final_info": aside | {f"_{name}": ended for name in aside}}
         self._start(ended)
@@ -492,7 +489,7 @@ class BatchEnv(VectorEnv):
     # checkpoints
 
     def get_state(self) -> dict[str, Any]:
-        """Return all that decides what comes next, as copies; `set_state` goes on from it bit for bit."""
+        """Return copies of everything that determines the future; `set_state` continues from it bit for bit."""
         return deepcopy(
             {
                 "made_as": self._made_as(),
@@ -511,16 +508,16 @@ class BatchEnv(VectorEnv):
         return {"task": self.task.name, "n_elements": elements, **{name: getattr(self, name) for name in names}}
 
     def set_state(self, saved: dict[str, Any]) -> None:
-        """Go on from what `get_state` returned, here or in another process.
+        """Continue from a result of `get_state`, here or in another process.
 
         Raises
         ------
         ValueError
-            If it was taken from an environment that was made otherwise: with another task, size, body or time step.
+            If it comes from an environment with a different task, size, body or time step.
         """
         for name, mine in self._made_as().items():
             if (other := saved["made_as"].get(name)) != mine:
-                raise ValueError(f"the state was taken where {name} is {other}; here it is {mine}")
+                raise ValueError(f"the state is of an environment whose {name} is {other}; here it is {mine}")
         for array, value in zip(self.control, saved["control"], strict=True):
             array[...] = value
         for name, value in saved["physics"].items():
@@ -536,11 +533,11 @@ class BatchEnv(VectorEnv):
             for generator, state in zip(self._generators, saved["generators"], strict=True):
                 generator.bit_generator.state = state
 
-    # for those who look on
+    # for observers
 
     @property
     def termination_reasons(self) -> tuple[str, ...]:
-        """Names of the reasons by the number that ``termination_reason`` has in the info; see `Task`."""
+        """Names of the reasons, indexed by ``termination_reason`` in the info; see `Task`."""
         return self.task.termination_reasons
 
     @property  # type: ignore[misc]
@@ -550,12 +547,12 @@ class BatchEnv(VectorEnv):
 
     @property
     def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
-        """The seed that each generator was made with."""
+        """The seed of each generator."""
         return tuple(self._seeds)
 
     @property
     def target(self) -> Array | None:
-        """The targets' positions in the lab [m], (B, 3), or None where the task has none."""
+        """The targets' positions in the lab [m], (B, 3), or None if the task has none."""
         return self.task.target(self.task.goal_type(*self.goal.T))
 
 

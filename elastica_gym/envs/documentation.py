@@ -1,4 +1,4 @@
-"""The page of an environment, in Markdown, written from the declaration of its task and its body."""
+"""The page of an environment, in Markdown, generated from its task and its body."""
 
 import functools
 import inspect
@@ -12,11 +12,11 @@ from .initial_states import bent, with_object_held
 from .task import Task, TerminationReason
 
 EFFECTS = {"normal": "bends sideways", "binormal": "lifts", "tangent": "twists"}
-"""What muscles of each direction do"""
+"""Effect of the muscles in each direction"""
 
 
 def document(task: Task) -> str:
-    """Return the specification of a task: action, observation, rewards, start and end, as tables in Markdown."""
+    """Return the specification of a task as Markdown: action, observation, rewards, start and end."""
     body = task.make_body()
     about, _, history = task.description.partition("Version history\n---------------\n")
     title, _, text = about.strip().partition("\n")
@@ -32,7 +32,7 @@ def document(task: Task) -> str:
         "## Arguments",
         "Those of `elastica_gym.envs.BatchEnv`: ``control_dt``, ``sim_dt`` "
         f"({body.sim_dt:g} s), ``duration``, ``max_episode_steps``, ``n_threads``, ``weights``, ``spread``, "
-        "``body_kwargs``, ``render_mode``, ``render_size``; and of `make_vec` ``autoreset_mode``.",
+        "``body_kwargs``, ``render_mode``, ``render_size``; with `make_vec`, also ``autoreset_mode``.",
     ]
     if history:
         parts += ["## Version history", "\n".join(f"- {line}" for line in history.strip().split("\n"))]
@@ -42,9 +42,9 @@ def document(task: Task) -> str:
 def _action(body: Body) -> Iterator[str]:
     yield "## Action"
     yield (
-        f"``Box(-1, 1, ({body.n_activations},), float32)``: the activations that the muscles are commanded to, held "
-        "for a control step and clipped to the range. Muscles follow with a time constant of "
-        f"{body.muscles.activation_time:g} s. An action of another shape, or one that holds NaN, raises ValueError."
+        f"``Box(-1, 1, ({body.n_activations},), float32)``: the commanded muscle activations, held for a control step "
+        "and clipped to the range. Muscles follow with a time constant of "
+        f"{body.muscles.activation_time:g} s. An action of the wrong shape or with NaN raises ValueError."
     )
     rows = []
     for direction in DIRECTIONS:
@@ -54,7 +54,7 @@ def _action(body: Body) -> Iterator[str]:
     yield "\n".join(["| index | direction | arm |", "|---|---|---|", *rows])
     yield (
         f"Each row has the {N_FUNCTIONS} basis functions of `elastica_gym.bodies.muscles`: level 0, then 2 of level 1, "
-        "then 4 of level 2, each from the arm's beginning to its end."
+        "then 4 of level 2, each in order from the arm's beginning to its end."
     )
 
 
@@ -62,7 +62,7 @@ def _observation(task: Task, body: Body) -> Iterator[str]:
     yield "## Observation"
     yield (
         f"``Box(float32)``, clipped to its range. Directions are in the frame of the heading: {body.frame}; right is "
-        "to its right seen from above, with y up."
+        "to the right of forward, seen from above; up is y."
     )
     layout, rows = task.layout(body), []
     for block in layout.blocks:
@@ -75,13 +75,13 @@ def _observation(task: Task, body: Body) -> Iterator[str]:
 
 def _rewards(task: Task) -> Iterator[str]:
     yield "## Rewards"
-    yield "The sum of these terms, each of which is in the info as ``reward_<term>`` with its weight:"
+    yield "The sum of these terms, each of which is in the info, weighted, as ``reward_<term>``:"
     rows = [
         f"| {name} | {task.reward_weights[name]:g} | {_returned(term)} |" for name, term in task.reward_terms.items()
     ]
-    rows.append(f"| diverged | {task.reward_weights['diverged']:g} | 1 where the simulation has diverged, and then all "
-                "other terms are 0 |")  # fmt: skip
-    yield "\n".join(["| term | weight | formula, a control step |", "|---|---|---|", *rows])
+    rows.append(f"| diverged | {task.reward_weights['diverged']:g} | 1 if the simulation has diverged; all other "
+                "terms are then 0 |")  # fmt: skip
+    yield "\n".join(["| term | weight | formula, per control step |", "|---|---|---|", *rows])
     reasons = [
         f"{number} {name}"
         for number, name in enumerate(task.termination_reasons)
@@ -95,10 +95,10 @@ def _rewards(task: Task) -> Iterator[str]:
 
 def _start(task: Task) -> Iterator[str]:
     yield "## Starting state"
-    yield "All is drawn from the environment's own generator. ``spread`` is one of these, by default the first:"
+    yield "Drawn from the environment's own generator. ``spread`` is one of these, by default the first:"
     yield "\n".join(f"- ``{name}``: {_described(start)}" for name, start in task.initial_states.items())
     if any(start is not bent and start is not with_object_held for start in task.initial_states.values()):
-        yield f"The animal itself, unless its arm holds the object: {_described(bent)}"
+        yield f"The animal, unless its arm holds the object: {_described(bent)}"
     yield f"The goal: {_described(task.sample_goal)}"
 
 
@@ -107,17 +107,17 @@ def _end(task: Task, body: Body) -> Iterator[str]:
     ends = ["at success"] if task.ends_on_success else []
     ends += [f"as {name} if {_returned(failed).removeprefix('whether ')}" for name, failed in task.failures.items()]
     ends.append(
-        f"as diverged if numbers stop being finite or something is faster than {body.sensors.fastest:g} m/s: then the "
-        "last sound observation is returned"
+        f"as diverged if a number is not finite or a speed exceeds {body.sensors.fastest:g} m/s: the last valid "
+        "observation is then returned"
     )
     yield (
-        f"Truncated after {task.duration:g} s, which are {round(task.duration / CONTROL_DT)} control steps. "
+        f"Truncated after {task.duration:g} s ({round(task.duration / CONTROL_DT)} control steps). "
         f"Terminated {'; '.join(ends)}."
     )
 
 
 def _returned(function: Callable[..., Any]) -> str:
-    """Return what a function says that it returns, without its shape."""
+    """Return the first line of a function's docstring, without ``Return`` and the shape."""
     first = _doc(function).split("\n")[0].removeprefix("Return ").removesuffix(".")
     for shape in (", (B,) bool", ", (B,)"):
         first = first.removesuffix(shape)
@@ -130,7 +130,7 @@ def _described(function: Callable[..., Any]) -> str:
 
 
 def _sentence(text: str) -> str:
-    """Return a text that begins with a capital letter."""
+    """Return a text with its first letter capitalised."""
     return text[:1].upper() + text[1:]
 
 

@@ -2,46 +2,46 @@
 
 Description
 -----------
-The animals and starts of `.tasks.snake_reach` and `.tasks.octopus_reach`, as environments
-whose goal can be changed afterwards (Andrychowicz et al. 2017): an episode that went elsewhere is a good one for
-the place where it went. The snake's goal is its target, the octopus's the place where its object stands at the start.
+The animals and initial states of `.tasks.snake_reach` and `.tasks.octopus_reach`, as environments whose goals can be
+relabelled (Andrychowicz et al. 2017): an episode that ended elsewhere is a success for the place where it ended. The
+snake's goal is its target, the octopus's the initial place of its object.
 
 Action
 ------
-``Box(-1, 1, (42,), float32)``, as there.
+``Box(-1, 1, (42,), float32)``, as in those tasks.
 
 Observation
 -----------
 ``Dict(observation, achieved_goal, desired_goal)`` of ``Box(float32)``:
 
-- ``observation``: what those tasks observe without the numbers about the goal (of the octopus, 0 to 205, of the snake,
-  0 to 156), and last the heading, which they do without: a unit vector along x and z of the lab, -1 to 1.
+- ``observation``: the observation of those tasks without the goal (0 to 205 for the octopus, 0 to 156 for the snake),
+  followed by the heading: a unit vector along x and z of the lab, -1 to 1.
 - ``achieved_goal``: the head's place on the ground, as x and z of the lab, in body lengths, -4 to 4.
-- ``desired_goal``: the place where it should be, likewise.
+- ``desired_goal``: the place where the head should be, likewise.
 
 Nothing in ``observation`` depends on the goal.
 
 Rewards
 -------
-1 where the head is at the goal, within 0.05 body lengths for the snake; for the octopus within 0.225 m, where the
-surfaces of its head and of the object are no more than 0.05 m apart; else 0. Of any goals, (..., 2), this is what
-``compute_reward(achieved_goal, desired_goal, info)`` tells, which does not look at the info. A failure ends the
-episode, and costs that there is no more reward.
+1 if the head is at the goal, within 0.05 body lengths for the snake and within 0.225 m for the octopus, at which the
+surfaces of its head and of the object are at most 0.05 m apart; else 0. For any goals, (..., 2),
+``compute_reward(achieved_goal, desired_goal, info)`` returns this reward; it ignores the info. A failure ends the
+episode without reward.
 
 Episode end
 -----------
-Terminated at the goal; where the octopus topples; and where the simulation diverges. Truncated after 20 s for the snake
+Terminated at the goal, if the octopus topples, and if the simulation diverges. Truncated after 20 s for the snake
 and 10 s for the octopus.
 
 Arguments
 ---------
-Those of `elastica_gym.envs.BatchEnv`, but for ``weights``, of which ``compute_reward`` would know nothing; ``spread``
-as there.
+Those of `elastica_gym.envs.BatchEnv` except ``weights``, which ``compute_reward`` does not use; ``spread`` as in those
+tasks.
 
 Training
 --------
-The observations are for Stable-Baselines3's ``MultiInputPolicy`` and its replay buffer with hindsight, through the
-adapter of this package::
+The observations suit Stable-Baselines3's ``MultiInputPolicy`` and its hindsight replay buffer, through this package's
+adapter::
 
     from stable_baselines3 import SAC, HerReplayBuffer
     from elastica_gym.rl import make_batch_vec_env
@@ -50,8 +50,8 @@ adapter of this package::
     model = SAC("MultiInputPolicy", envs, replay_buffer_class=HerReplayBuffer, learning_starts=6400, train_freq=4)
     model.learn(300_000)
 
-``python -m agents.train`` takes the flat ids only; ``python -m agents.evaluate`` these too, for policies that do not
-look at observations. Neither has been trained to success here.
+``python -m agents.train`` accepts only flat ids; ``python -m agents.evaluate`` also accepts these, for policies that
+ignore observations. Neither environment has been trained to success here.
 
 Version history
 ---------------
@@ -84,14 +84,14 @@ Parts = dict[str, NDArray[np.float32]]
 
 @dataclass(frozen=True, kw_only=True)
 class GoalTask(Task):
-    """A task that makes environments whose goals can be changed afterwards; see `goal_conditioned`.
+    """A task for environments whose goals can be relabelled; see `goal_conditioned`.
 
     Attributes
     ----------
     base : str
-        Name of the task whose animal and starts it has.
+        Name of the task whose animal and initial states it uses.
     tolerance : float
-        Distance of the head from the goal that is near enough, in body lengths.
+        Distance of the head from the goal that counts as success, in body lengths.
     """
 
     base: str
@@ -99,7 +99,7 @@ class GoalTask(Task):
 
 
 def sample_object(rng: np.random.Generator, situation: Situation) -> Goal:
-    """Return where the object stands."""
+    """Return a goal at the place of the object."""
     place, head = situation.pose.objects[0, 0, [0, 2]], situation.pose.head[0, [0, 2]]
     return Goal._make([*place, np.hypot(*(place - head))])
 
@@ -112,19 +112,19 @@ def observe_goal(situation: Situation) -> Array:
 
 
 def is_near(achieved: ArrayLike, desired: ArrayLike, tolerance: float) -> Mask:
-    """Return whether places (..., 2) are no further than a tolerance from others, in single precision, (...) bool."""
+    """Return whether places (..., 2) are within a tolerance of others, in single precision, (...) bool."""
     way = np.asarray(achieved, dtype=np.float32) - np.asarray(desired, dtype=np.float32)
     return way[..., 0] * way[..., 0] + way[..., 1] * way[..., 1] <= np.float32(tolerance * tolerance)
 
 
 def succeeds(situation: Situation, tolerance: float) -> Mask:
-    """Return whether the head is at the goal, as one who sees them can tell, (B,) bool."""
+    """Return whether the head is at the goal, as observed, (B,) bool."""
     seen = np.clip(observe_goal(situation), -4.0, 4.0).astype(np.float32)
     return is_near(seen[:, 2:4], seen[:, 4:], tolerance)
 
 
 def reached(situation: Situation, tolerance: float) -> Array:
-    """Return 1 where the head is at the goal, (B,)."""
+    """Return 1 if the head is at the goal, (B,)."""
     return succeeds(situation, tolerance).astype(np.float64)
 
 
@@ -137,16 +137,16 @@ def distance(situation: Situation) -> Array:
 def goal_conditioned(
     task: Task, *, sample_goal: Callable[[np.random.Generator, Situation], Goal], tolerance: float
 ) -> GoalTask:
-    """Return the goal-conditioned form of a task: bring the head to a place, with the animal and the starts of another.
+    """Return the goal-conditioned form of a task: bring the head to a place, with the task's animal and initial states.
 
     Parameters
     ----------
     task : Task
-        Its name gets ``Goal`` at the end. Its failures must not depend on its own goal.
+        ``Goal`` is appended to its name. Its failures must not depend on its own goal.
     sample_goal : callable
-        As of a `Task`; it returns a `Goal`.
+        As in a `Task`; it returns a `Goal`.
     tolerance : float
-        Distance of the head from the place that is near enough, in body lengths.
+        Distance of the head from the place that counts as success, in body lengths.
     """
     own = dict(
         name=f"{task.name}Goal",
@@ -194,14 +194,14 @@ def _space(flat: Any) -> Dict:
 def _refuse_weights(arguments: dict[str, Any]) -> None:
     if "weights" in arguments:
         raise ValueError(
-            "weights cannot be given where goals can be changed: the reward is 1 at the goal and else 0, "
-            f"as compute_reward tells it, not {arguments['weights']!r}"
+            "weights cannot be given for goal-conditioned environments, whose reward is 1 at the goal and 0 elsewhere, "
+            f"not {arguments['weights']!r}"
         )
 
 
-# libraries such as skrl tell an environment by its class's direct bases, of which Gymnasium's has to be one
+# libraries such as skrl identify environments by their direct base classes, which must include Gymnasium's
 class GoalBatchEnv(BatchEnv, VectorEnv):
-    """A batch of animals, each with a goal that can be changed afterwards.
+    """A batch of animals, each with a goal that can be relabelled.
 
     Made by ``gymnasium.make_vec("elastica_gym/<Name>ReachGoal-v1", num_envs=...)``. Observations are a dict of
     arrays; that of an episode's last step in ``final_obs`` is an array of dicts, as in Gymnasium's own batches.
@@ -232,12 +232,12 @@ class GoalBatchEnv(BatchEnv, VectorEnv):
         return _parts(observations), *rest, info
 
     def compute_reward(self, achieved_goal: ArrayLike, desired_goal: ArrayLike, info: Any) -> Array:
-        """Return the rewards of achieved goals when others were desired, (..., 2) to (...)."""
+        """Return the rewards of achieved goals for desired goals, (..., 2) to (...)."""
         return is_near(achieved_goal, desired_goal, self.tolerance).astype(np.float64)
 
 
 class GoalEnv(SingleEnv, gymnasium.Env):
-    """One animal with a goal that can be changed afterwards; what ``gymnasium.make`` returns."""
+    """One animal with a goal that can be relabelled, as returned by ``gymnasium.make``."""
 
     def __init__(self, task: GoalTask, **kwargs: Any) -> None:
         _refuse_weights(kwargs)
@@ -256,5 +256,5 @@ class GoalEnv(SingleEnv, gymnasium.Env):
         return _parts(observation), *rest
 
     def compute_reward(self, achieved_goal: ArrayLike, desired_goal: ArrayLike, info: Any) -> Array:
-        """Return the rewards of achieved goals when others were desired, (..., 2) to (...)."""
+        """Return the rewards of achieved goals for desired goals, (..., 2) to (...)."""
         return is_near(achieved_goal, desired_goal, self.tolerance).astype(np.float64)

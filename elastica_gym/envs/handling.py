@@ -1,6 +1,6 @@
-"""What tasks with an object follow: how it is gripped, what it has been through, and what of that is rewarded.
+"""The common part of tasks with an object: its grip, its progress through an episode, and the reward terms.
 
-All is told from where things are at the end of each control step (`elastica_gym.bodies.grip`), not from forces.
+All is computed from positions at the end of each control step (`elastica_gym.bodies.grip`), not from forces.
 """
 
 import functools
@@ -25,86 +25,86 @@ from .task import (
 )
 
 WRAPPED = np.radians(200.0)
-"""Angle around the object's axis that the touching elements of an arm span where it has grabbed it [rad]"""
+"""Angle around the object's axis that an arm's touching elements must span to grab it [rad]"""
 KEPT = np.radians(150.0)
-"""And where it still holds it [rad]"""
+"""Angle that they must span to keep holding it [rad]"""
 FEWEST = 5
-"""Touching elements without which an arm counts as spanning nothing"""
+"""Number of touching elements below which an arm's span counts as zero"""
 GRABBING_TIME = 0.5
-"""How long an arm has to have it wrapped without a break [s]"""
+"""Time for which an arm must wrap it without interruption [s]"""
 SLACK_TIME = 0.2
-"""How long it may then hold less [s]"""
+"""Time for which a holding arm may then span less [s]"""
 UPRIGHT = np.radians(45.0)
 """Tilt up to which the object stands [rad]"""
 MOVED = 0.1
-"""Way of the object that counts as moved [m]"""
+"""Displacement of the object that counts as moved [m]"""
 CRAWLED = (0.2, 0.1)
-"""Distance of the head and of the centre of mass from their start that counts as crawled [m]"""
+"""Distances of the head and of the centre of mass from their start that count as crawled [m]"""
 AT_HOME = 0.1
 """Distance of the head from home that counts as being there [m]"""
 BROUGHT = 0.3
-"""Distance of the object from the head that counts as having brought it [m]"""
+"""Distance of the object from the head that counts as brought along [m]"""
 TO_OBJECT = DIRECTION._replace(meaning="direction from the head to the object: forward and right of a unit vector")
-"""Where to go, as animals observe it that shall go to their object"""
+"""Direction observed in tasks of going to the object"""
 
 
 class Goal(NamedTuple):
-    """Where to bring the object, and how all was at the start."""
+    """Where to bring the object, and the situation at the start."""
 
     home_x: Array
-    """Where home is [m]"""
+    """Place of home along x [m]"""
     home_z: Array
-    """The same [m]"""
+    """The same along z [m]"""
     start_x: Array
-    """Where the centre of mass was at the start [m]"""
+    """Place of the centre of mass at the start along x [m]"""
     start_z: Array
-    """The same [m]"""
+    """The same along z [m]"""
     away: Array
     """Distance of the object from home at the start [m]"""
 
 
 class Handling(NamedTuple):
-    """How each of B animals handles its object: a situation's ``progress``, (B,) each."""
+    """The progress of each of B animals with its object, as a situation's ``progress``, (B,) each."""
 
     reach: Array
-    """Least distance of the object's surface from the half of an arm that is next to the head [m]"""
+    """Least distance of the object's surface from the inner half of an arm, the one next to the head [m]"""
     span: Array
-    """The larger of the angles around the object's axis that an arm's touching elements span [rad]"""
+    """Angle around the object's axis that an arm's touching elements span; the larger of two arms [rad]"""
     winding: Array
-    """The larger of the angles that an arm winds around it, near as it is (`Grip.windings`) [rad]"""
+    """Angle that an arm winds around it, weighted by proximity (`Grip.windings`); the larger of two arms [rad]"""
     first: Array
-    """Steps in a row at whose end the first arm has had it wrapped"""
+    """Number of consecutive steps that ended with the first arm wrapped around it"""
     second: Array
-    """Steps in a row at whose end the second arm has had it wrapped"""
+    """Number of consecutive steps that ended with the second arm wrapped around it"""
     slack: Array
-    """Steps in a row at whose end neither arm has held it"""
+    """Number of consecutive steps that ended with neither arm holding it"""
     grabbed: Array
-    """1 from when an arm has grabbed it until it is let go, else 0; what is held at the start is grabbed"""
+    """1 from the grab until the release, else 0; an object held at the start counts as grabbed"""
     moved_x: Array
-    """Way that the centre of its base has made while it stood and was touched, along x [m]"""
+    """Displacement of the centre of its base while it stood and was touched, along x [m]"""
     moved_z: Array
     """The same along z [m]"""
     base_x: Array
-    """Where the centre of its base is [m]"""
+    """Place of the centre of its base along x [m]"""
     base_z: Array
-    """The same [m]"""
+    """The same along z [m]"""
     tilt: Array
     """Angle of its axis from upright [rad]"""
     head_way: Array
-    """Furthest that the head has been from home, which is where it starts but in OctopusReturn [m]"""
+    """Largest distance of the head from home so far; home is where it starts, except in OctopusReturn [m]"""
     crawled: Array
-    """1 from when both head and centre of mass have been `CRAWLED` from there, at the same moment, else 0"""
+    """1 once head and centre of mass have been `CRAWLED` away from there at the same time, else 0"""
 
 
 def follow(situation: Situation, state: State) -> Handling:
-    """Return how the object is handled at the end of this step."""
+    """Return the progress with the object at the end of this step."""
     s, old, begins = situation, situation.progress, situation.time_left >= 1.0
     held = grip(s.body, state)
     arms = np.where(held.counts >= FEWEST, held.spans, 0.0)
     span = np.maximum(arms[:, 0], arms[:, 1])
     first, second = (np.where(arms[:, a] >= WRAPPED, n + 1.0, 0.0) for a, n in enumerate((old.first, old.second)))
     slack = np.where(span >= KEPT, 0.0, old.slack + 1.0)
-    # n looks in a row are n - 1 steps apart
+    # n consecutive observations span n - 1 steps
     grabs = (np.maximum(first, second) - 1.0) * s.control_dt >= GRABBING_TIME - 1e-9
     keeps = (old.grabbed == 1.0) & (slack * s.control_dt <= SLACK_TIME + 1e-9)
     grabbed = np.where(begins, span >= KEPT, grabs | keeps)
@@ -131,7 +131,7 @@ def follow(situation: Situation, state: State) -> Handling:
 
 
 def _reach(gaps: Array, arms: Index) -> Array:
-    """Return the least gap of the half of either arm that is next to the head, 0 where it touches [m], (B,)."""
+    """Return the least gap of the inner half of either arm, 0 if it touches [m], (B,)."""
     (tip, base), (other_base, other_tip) = arms
     inner = gaps[:, (tip + base) // 2 : base].min(axis=1)
     other = gaps[:, other_base : (other_base + other_tip) // 2].min(axis=1)
@@ -139,19 +139,19 @@ def _reach(gaps: Array, arms: Index) -> Array:
 
 
 def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
-    """Return a goal whose home is where the head is."""
+    """Return a goal whose home is at the head."""
     return goal_with_home(situation, situation.pose.head[0, 0], situation.pose.head[0, 2])
 
 
 def goal_with_home(situation: Situation, x: float, z: float) -> Goal:
-    """Return the goal of one environment whose home is there."""
+    """Return the goal of one environment with its home at (x, z)."""
     pose = situation.pose
     away = distance_from(pose.objects[:, 0], np.array([x]), np.array([z]))
     return Goal._make([x, z, *pose.centre[0, [0, 2]], *away])
 
 
 def brought(situation: Situation) -> Array:
-    """Return by how much the object is nearer to home than at the start [m], (B,)."""
+    """Return how much nearer to home the object is than at the start [m], (B,)."""
     goal = situation.goal
     return goal.away - distance_from(situation.pose.objects[:, 0], goal.home_x, goal.home_z)
 
@@ -165,12 +165,12 @@ def direction_to_object(situation: Situation) -> tuple[Array, Array]:
 
 
 def observe_object(situation: Situation) -> Array:
-    """Return the direction to the object, forward and right, and the way home, forward and right, (B, 4)."""
+    """Return the direction to the object and the vector home, forward and right each, (B, 4)."""
     return np.stack([*direction_to_object(situation), *way_home(situation)], axis=1)
 
 
 def way_home(situation: Situation) -> tuple[Array, Array]:
-    """Return the way from the head to its home, forward and right, in body lengths, (B,) each."""
+    """Return the vector from the head to its home, forward and right, in body lengths, (B,) each."""
     return way_to(situation, situation.goal.home_x, situation.goal.home_z)
 
 
@@ -181,16 +181,16 @@ def direction_home(situation: Situation) -> tuple[Array, Array]:
     return forward / away, right / away
 
 
-# what is rewarded: each is by how much a function of where things are has grown, and adds up to nothing over a detour
+# reward terms: each is the increase of a function of positions, so it sums to zero over a detour
 
 
 def approach(situation: Situation) -> Array:
-    """Return by how much an arm's inner half has come nearer to the object in this step, in body lengths, (B,)."""
+    """Return how much nearer an arm's inner half has come to the object in this step, in body lengths, (B,)."""
     return (situation.progress_before.reach - situation.progress.reach) / situation.body.sensors.length
 
 
 def crawl(situation: Situation) -> Array:
-    """Return by how much the furthest way of the head from its start has grown, in parts of 0.2 m, up to 1, (B,)."""
+    """Return the increase of the head's largest distance from its start, in units of 0.2 m, up to 1, (B,)."""
     least, _ = CRAWLED
     new, old = (np.minimum(h.head_way, least) for h in (situation.progress, situation.progress_before))
     return (new - old) / least
@@ -202,30 +202,30 @@ def moved(progress: Handling) -> Array:
 
 
 def move(situation: Situation) -> Array:
-    """Return by how much the way of the object has grown, in parts of 0.1 m, up to 1, (B,)."""
+    """Return the increase of the object's displacement, in units of 0.1 m, up to 1, (B,)."""
     new, old = (np.minimum(moved(h), MOVED) for h in (situation.progress, situation.progress_before))
     return (new - old) / MOVED
 
 
 def wrap(situation: Situation) -> Array:
-    """Return by how much the angle around the object has grown, up to 200 degrees [rad], (B,)."""
+    """Return the increase of the angle that an arm spans around the object, up to 200 degrees [rad], (B,)."""
     return np.minimum(situation.progress.span, WRAPPED) - np.minimum(situation.progress_before.span, WRAPPED)
 
 
 def wind(situation: Situation) -> Array:
-    """Return by how much the angle that an arm winds around the object has grown, up to 200 degrees [rad], (B,)."""
+    """Return the increase of the angle that an arm winds around the object, up to 200 degrees [rad], (B,)."""
     return np.minimum(situation.progress.winding, WRAPPED) - np.minimum(situation.progress_before.winding, WRAPPED)
 
 
 def grab(situation: Situation) -> Array:
-    """Return 1 where the object has been grabbed in this step, -1 where it has been let go, (B,)."""
+    """Return 1 if the object was grabbed in this step, -1 if it was released, (B,)."""
     return situation.progress.grabbed - situation.progress_before.grabbed
 
 
 def home(situation: Situation) -> Array:
-    """Return by how much g max(0, 1 - d) has grown, with g whether the object is held, d the way home, (B,).
+    """Return the increase of g max(0, 1 - d), g being 1 while the object is held and d the distance to home, (B,).
 
-    The way home is that of the head, in body lengths.
+    The distance is the head's, in body lengths.
     """
     s = situation
 
@@ -236,14 +236,14 @@ def home(situation: Situation) -> Array:
 
 
 def is_at_home(situation: Situation) -> Mask:
-    """Return whether the head is at home, and the object, in the animal's hold, near it, (B,) bool."""
+    """Return whether the head is at home, with the object held and near it, (B,) bool."""
     s, h = situation, situation.progress
     at_home = distance_from(s.pose.head, s.goal.home_x, s.goal.home_z) <= AT_HOME
     return (h.grabbed == 1.0) & at_home & (distance_from(s.pose.head, h.base_x, h.base_z) <= BROUGHT)
 
 
 def has_crawled(situation: Situation) -> Mask:
-    """Return whether the head and the centre of mass have been far enough from their starts at once, (B,) bool."""
+    """Return whether the head and the centre of mass have been far enough from their starts together, (B,) bool."""
     return situation.progress.crawled == 1.0
 
 
@@ -258,7 +258,7 @@ def has_fallen(situation: Situation) -> Mask:
 
 
 def fallen(situation: Situation) -> Array:
-    """Return 1 where the object leans by more than 45 degrees, (B,)."""
+    """Return 1 if the object leans by more than 45 degrees, (B,)."""
     return has_fallen(situation).astype(np.float64)
 
 
@@ -274,4 +274,4 @@ handling_task = functools.partial(
     failures={"toppled": has_toppled, "fallen": has_fallen},
     target=no_target,
 )
-"""Make a task of handling the object; what these have in common is given, and may be given otherwise"""
+"""Make a task of handling the object; arguments override the common defaults"""

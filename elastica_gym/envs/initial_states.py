@@ -1,7 +1,7 @@
-"""How an episode starts: the animal somewhat bent, in any direction, slightly in motion; its object at some place.
+"""Initial states of episodes: the animal slightly bent, with any heading, slightly in motion; its object at some place.
 
-Each start is written into environment i. What it returns is what the muscles' activations have reached, or None where
-they are at rest.
+Each function writes an initial state into environment i and returns the muscles' activations in it, or None if they
+are at rest.
 """
 
 import functools
@@ -24,10 +24,10 @@ ARC = 0.4
 RING = (0.4, 0.8)
 """Its least and largest distance anywhere [m]"""
 NEARBY = (0.2, 0.4)
-"""Its least and largest distance where the animal need hardly crawl [m]"""
+"""Its least and largest distance where the animal hardly needs to crawl [m]"""
 IN_THE_BEND = ((0.224, 0.22), (0.255, 0.2), (0.291, 0.1))
-"""Where an arm can grab it by bending at full strength: distance from the head [m], and angle to the right of the way
-ahead, for the second arm, or behind, for the first [rad]"""
+"""Places where an arm can grab it by bending at full strength: distance from the head [m], and angle to the right of
+straight ahead, for the second arm, or of straight behind, for the first [rad]"""
 GRABBING = 0.8
 """Time in which the arm is bent to full strength [s]"""
 HOLDING = 2.0
@@ -35,14 +35,14 @@ HOLDING = 2.0
 
 
 def bent(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
-    """Write a new start: shape, heading and velocity at random, muscles at rest.
+    """Write a random shape, heading and velocity, with muscles at rest.
 
-    The heading is uniform. The animal is bent sideways by couples that are three sine waves of random phase, under
-    which the curvature of its thinnest part has standard deviations of 0.7, 0.35 and 0.175 per body length; it
-    straightens when let go. Its horizontal velocity has a standard deviation of 0.02 m/s in each direction. Its centre
-    of mass is above the origin.
+    The heading is uniform. The animal is bent sideways by couples of three sine waves of random phase, for which the
+    curvature of its thinnest part has standard deviations of 0.7, 0.35 and 0.175 per body length; it straightens when
+    released. Its horizontal velocity has a standard deviation of 0.02 m/s in each direction. Its centre of mass is
+    above the origin.
     """
-    # all else, ghosts included, is copied from the body at rest: what diverged leaves no trace; the animal is one rod
+    # all else, ghosts included, is copied from the body at rest, so a divergence leaves no trace; the animal is one rod
     heading = rng.uniform(-np.pi, np.pi)
     bends = rng.normal(0.0, BENDS)
     phases = rng.uniform(-np.pi, np.pi, len(BENDS))
@@ -60,7 +60,7 @@ def bent(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
 
 
 def _turn(angle: Array, mass: Array, nodes: Array, directors: Array) -> None:
-    """Turn each element of a rod by an angle about the vertical, from x to z, and join them again, in place."""
+    """Rotate each element of a rod by an angle about the vertical, from x to z, and reconnect them, in place."""
     cosine, sine = np.cos(angle), np.sin(angle)
 
     def turned(x: Array, z: Array) -> tuple[Array, Array]:
@@ -74,9 +74,9 @@ def _turn(angle: Array, mass: Array, nodes: Array, directors: Array) -> None:
 
 
 def with_object_on_the_arc(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
-    """Write a new start, with the object at 0.4 m from the head, from straight ahead to straight to the right.
+    """Write a bent animal with the object at 0.4 m from the head, between straight ahead and straight to the right.
 
-    The angle is uniform, drawn again where the object would stand in the animal.
+    The angle is uniform, redrawn if the object would overlap the animal.
     """
     bent(rng, body, state, i)
     while not _place(body, state, i, ARC, rng.uniform(0.0, 0.5 * np.pi)):
@@ -84,16 +84,16 @@ def with_object_on_the_arc(rng: np.random.Generator, body: Body, state: State, i
 
 
 def with_object_anywhere(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
-    """Write a new start, with the object at 0.4 to 0.8 m from the head, in any direction; both are uniform."""
+    """Write a bent animal with the object at 0.4 to 0.8 m from the head, in any direction; both are uniform."""
     bent(rng, body, state, i)
     while not _place(body, state, i, rng.uniform(*RING), rng.uniform(-np.pi, np.pi)):
         pass
 
 
 def with_object_to_the_right(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
-    """Write a new start, with the object at 0.4 m straight to the right of the head, the far end of the arc.
+    """Write a bent animal with the object at 0.4 m straight to the right of the head, the far end of the arc.
 
-    The start is drawn again where the object would stand in the animal.
+    The state is redrawn if the object would overlap the animal.
     """
     bent(rng, body, state, i)
     while not _place(body, state, i, ARC, 0.5 * np.pi):
@@ -101,7 +101,7 @@ def with_object_to_the_right(rng: np.random.Generator, body: Body, state: State,
 
 
 def _place(body: Body, state: State, i: int, away: float, angle: float, clear: float = CLEAR) -> bool:
-    """Put the first object at a distance from the head and an angle to the right [m, rad], if it is clear there."""
+    """Place the first object at a distance from the head and an angle to the right [m, rad], if there is room."""
     x, sensors = state.x[i], body.sensors
     forward = np.array(
         [
@@ -129,16 +129,16 @@ def _clearance(body: Body, x: Array, place: Array) -> float:
 
 
 def with_object_nearby(rng: np.random.Generator, body: Body, state: State, i: int) -> None:
-    """Write a new start, with the object at 0.2 to 0.4 m from the head, in any direction; both are uniform."""
+    """Write a bent animal with the object at 0.2 to 0.4 m from the head, in any direction; both are uniform."""
     bent(rng, body, state, i)
     while not _place(body, state, i, rng.uniform(*NEARBY), rng.uniform(-np.pi, np.pi)):
         pass
 
 
 def with_object_held(rng: np.random.Generator, body: Body, state: State, i: int) -> Array:
-    """Write a new start, in which an arm, either one, holds the object, and return the activations that hold it.
+    """Write an animal with either arm holding the object, and return the activations that hold it.
 
-    It is one of six such states, turned to a random heading and slightly in motion.
+    It is one of six such states, rotated to a random heading and slightly in motion.
     """
     held, levels = holding(body)
     chosen, heading, velocity = rng.integers(len(levels)), rng.uniform(-np.pi, np.pi), rng.normal(0.0, SPEED, 2)
@@ -152,10 +152,10 @@ def with_object_held(rng: np.random.Generator, body: Body, state: State, i: int)
 
 
 def _rotate(angle: float, state: State, i: int, nodes: slice) -> None:
-    """Turn the animal and its objects about the vertical through the origin, from x to z, in place."""
+    """Rotate the animal and its objects about the vertical through the origin, from x to z, in place."""
     cosine, sine = np.cos(angle), np.sin(angle)
     contact = state.body_contact[i]
-    # (each with the axis of its vectors first)
+    # vector components are on the first axis
     for vectors in (
         state.x[i, :, nodes],
         state.Q[i, :, :, nodes].transpose(1, 0, 2),
@@ -172,8 +172,8 @@ def _rotate(angle: float, state: State, i: int, nodes: slice) -> None:
 def holding(body: Body) -> tuple[State, Array]:
     """Return states at rest in which an arm holds the object, and the activations that hold it, (6, 42).
 
-    The object is put into the bend of each arm, which is then bent at full strength; what it was bent for two seconds
-    holds the object wrapped by more than 200 degrees (`tests/envs/test_senses.py`). Not to be changed.
+    The object is placed in the bend of each arm, which is then bent at full strength; after two seconds, the arm wraps
+    the object by more than 200 degrees (`tests/envs/test_senses.py`). Do not modify the result.
     """
     arms = list(body.muscles.arms)
     places = [(away, angle) if arm else (away, np.pi - angle) for arm in range(2) for away, angle in IN_THE_BEND]
@@ -183,7 +183,7 @@ def holding(body: Body) -> tuple[State, Array]:
         for field, resting in zip(state, body.rest, strict=True):
             field[i] = resting[0]
         if not _place(body, state, i, away, angle, clear=0.0):
-            raise ValueError(f"an object {away} m from the head, {angle:.2f} rad to its right, stands in the animal")
+            raise ValueError(f"an object {away} m from the head, {angle:.2f} rad to its right, overlaps the animal")
         levels[i, body.muscles.columns("normal", arms[i // len(IN_THE_BEND)])] = 1.0
     n_parts = 16
     for part in range(n_parts):

@@ -1,4 +1,4 @@
-"""Ids and their tasks: what is registered with Gymnasium, here and by others."""
+"""Ids and their tasks, registered with Gymnasium here and by other packages."""
 
 from typing import Any
 
@@ -43,10 +43,10 @@ SHIPPED = {
 }
 IDS = tuple(env_id for env_id, task in SHIPPED.items() if not isinstance(task, GoalTask))
 GOAL_IDS = tuple(env_id for env_id, task in SHIPPED.items() if isinstance(task, GoalTask))
-"""Those whose observation is a dict with an achieved and a desired goal"""
+"""Ids whose observation is a dict with an achieved and a desired goal"""
 
 _tasks: dict[str, Task] = {}
-"""By the id under which each is registered"""
+"""Tasks by registered id"""
 
 
 def register(env_id: str, task: Task) -> None:
@@ -57,12 +57,12 @@ def register(env_id: str, task: Task) -> None:
     env_id : str
         Such as ``my_lab/SnakeTurn-v0``.
     task : Task
-        A `GoalTask` makes environments whose goals can be changed afterwards.
+        A `GoalTask` makes environments whose goals can be relabelled.
 
     Notes
     -----
-    Processes that are spawned, and ``agents``, have to import the module that registers: as with Gymnasium, the id
-    ``my_module:my_lab/SnakeTurn-v0`` does so. Environments can be pickled if the task's functions are a module's own.
+    Spawned processes and ``agents`` must import the registering module: as with Gymnasium, the id
+    ``my_module:my_lab/SnakeTurn-v0`` does so. Environments can be pickled if the task's functions are at module level.
     """
     _tasks[env_id] = task
     # no max_episode_steps: the batch truncates, and make would add a second limit
@@ -76,17 +76,17 @@ def register_all() -> None:
 
 
 def registered_ids() -> tuple[str, ...]:
-    """Return all ids whose environments come from `register`, or call the same entry points with other arguments."""
+    """Return all ids registered by `register`, or with the same entry points and other arguments."""
     return tuple(env_id for env_id, spec in gymnasium.registry.items() if spec.vector_entry_point == BATCH)
 
 
 def task_of(env_id: str) -> Task:
-    """Return the task of one of `registered_ids`, before which ``my_module:`` may stand.
+    """Return the task of one of `registered_ids`, optionally prefixed with ``my_module:``.
 
     Raises
     ------
     ValueError
-        If it is none of them.
+        If the id is not registered.
     """
     spec = gymnasium.registry.get(env_id.rpartition(":")[2])
     if spec is None or spec.vector_entry_point != BATCH:
@@ -95,7 +95,7 @@ def task_of(env_id: str) -> Task:
 
 
 def make_single(*, task: str, render_mode: str | None = None, **kwargs: Any) -> gymnasium.Env:
-    """Make the single environment of a registered task; what ``gymnasium.make`` calls."""
+    """Make the single environment of a registered task, as called by ``gymnasium.make``."""
     if render_mode == "human":
         _require_window()
         return HumanRendering(make_single(task=task, render_mode="rgb_array", **kwargs))
@@ -105,7 +105,7 @@ def make_single(*, task: str, render_mode: str | None = None, **kwargs: Any) -> 
 
 
 def make_batch(*, task: str, num_envs: int = 1, **kwargs: Any) -> BatchEnv:
-    """Make the batched environment of a registered task; what ``gymnasium.make_vec`` calls."""
+    """Make the batched environment of a registered task, as called by ``gymnasium.make_vec``."""
     found = _registered(task)
     if isinstance(found, GoalTask):
         return GoalBatchEnv(found, num_envs, **kwargs)
@@ -113,9 +113,9 @@ def make_batch(*, task: str, num_envs: int = 1, **kwargs: Any) -> BatchEnv:
 
 
 BATCH = f"{__name__}:{make_batch.__name__}"
-"""Entry point by which Gymnasium's registry tells our environments"""
+"""Entry point that identifies our environments in Gymnasium's registry"""
 
-# Gymnasium asks the entry point how it can draw, and makes rgb_array_list of rgb_array
+# Gymnasium reads render modes from the entry point, and derives rgb_array_list from rgb_array
 make_single.metadata = {"render_modes": ["human", *RENDER_MODES]}  # type: ignore[attr-defined]
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class SingleEnv(gymnasium.Env):
-    """One animal at its task. Made by ``gymnasium.make("elastica_gym/<Name>-v1")``.
+    """One animal performing a task. Made by ``gymnasium.make("elastica_gym/<Name>-v1")``.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class SingleEnv(gymnasium.Env):
     ) -> tuple[Observations, dict[str, Any]]:
         """Start a new episode; see `BatchEnv.reset`."""
         super().reset(seed=seed)
-        # the batch draws from this environment's own generator, also where a user has put one in
+        # the batch draws from this environment's own generator, including one set by the user
         self.batch._generators, self.batch._seeds = [self.np_random], [self.np_random_seed]
         observations, info = self.batch.reset(options=options)
         return observations[0], _values(info)
@@ -58,7 +58,7 @@ class SingleEnv(gymnasium.Env):
         return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), _values(info)
 
     def render(self) -> "Image | None":
-        """Draw the animal as it is now, (height, width, 3) uint8; see `BatchEnv.render`."""
+        """Draw the animal's current state, (height, width, 3) uint8; see `BatchEnv.render`."""
         frames = self.batch.render()
         return None if frames is None else frames[0]
 
@@ -72,16 +72,16 @@ class SingleEnv(gymnasium.Env):
         return self.batch.termination_reasons
 
     def get_state(self) -> dict[str, Any]:
-        """Return all that decides what comes next; see `BatchEnv.get_state`."""
+        """Return everything that determines the future; see `BatchEnv.get_state`."""
         return self.batch.get_state()
 
     def set_state(self, saved: dict[str, Any]) -> None:
-        """Go on from what `get_state` returned."""
+        """Continue from a result of `get_state`."""
         self.batch.set_state(saved)
         if self.batch._generators is not None:
             self._np_random, self._np_random_seed = self.batch._generators[0], self.batch._seeds[0]
 
 
 def _values(info: dict[str, Any]) -> dict[str, Any]:
-    """Return the values of the one environment, without the masks that say whose they are."""
+    """Return the values of the one environment, without the masks."""
     return {name: value.item(0) for name, value in info.items() if not name.startswith("_")}

@@ -1,4 +1,4 @@
-"""Spaces that say what their numbers are."""
+"""Spaces whose numbers have names."""
 
 from typing import Any
 
@@ -11,18 +11,18 @@ from ..bodies.mirror import Mirror
 class NamedBox(Box):
     """The observations or the actions of an animal, whose numbers have names.
 
-    A `gymnasium.spaces.Box` in all else, and equal to one of the same bounds.
+    Otherwise a `gymnasium.spaces.Box`, and equal to one with the same bounds.
 
     Parameters
     ----------
     low, high : NDArray
         Least and largest values, (d,) float32.
     names : tuple of str
-        What the d numbers are.
+        Names of the d numbers.
     mirror : Mirror or None
-        In which the animal is its own image; ``mirror.image(names)`` says what its numbers become there.
+        In which the animal is its own image; ``mirror.image(names)`` returns how the numbers transform.
     duration : float
-        Simulated time of an episode [s], which ``time_left`` is a part of.
+        Simulated time of an episode [s], of which ``time_left`` is a fraction.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What a task is: a goal, what is seen of it, and what is rewarded. Small pure functions over a batch."""
+"""The parts of a task: its goal, the goal's observation, and the rewards. Small pure functions over a batch."""
 
 import functools
 from collections.abc import Callable
@@ -17,42 +17,42 @@ Mask = NDArray[np.bool_]
 
 
 DIRECTION = Block("goal", ("forward", "right"), -1.0, 1.0, "1", "direction to go: forward and right of a unit vector")
-"""Where to go, as animals observe it"""
+"""Observed direction to go"""
 HOME = Block("home", ("forward", "right"), -4.0, 4.0, "body length",
-             "way from the head to where it was at the start, its home: forward and right")  # fmt: skip
-"""Where to come back to"""
+             "vector from the head to its home, its place at the start: forward and right")  # fmt: skip
+"""Observed place to return to"""
 CLOCK_PERIOD = 1.0
-"""Period of the clock that animals observe [s]"""
+"""Period of the observed clock [s]"""
 
 
 class TerminationReason(IntEnum):
-    """Why an episode has ended, as ``termination_reason`` in the info; a task's own failures have the numbers after."""
+    """Why an episode ended, as ``termination_reason`` in the info; the numbers of a task's own failures follow."""
 
     RUNNING = 0
-    """It has not ended"""
+    """The episode has not ended"""
     TIME_LIMIT = 1
     SUCCESS = 2
     DIVERGED = 3
-    """The physics has failed"""
+    """The simulation has diverged"""
 
 
 class Situation(NamedTuple):
-    """Where a batch of B environments stands after a control step."""
+    """The situation of a batch of B environments after a control step."""
 
     pose: Pose
-    """Where the animals are now"""
+    """The animals' current pose"""
     before: Pose
-    """Where they were a control step ago"""
+    """Their pose one control step ago"""
     goal: Any
-    """What the task drew at reset: its ``goal_type``, each field (B,)"""
+    """The goal sampled at reset: the task's ``goal_type``, each field (B,)"""
     progress: Any
-    """What the task follows through the episode, as of now: its ``progress_type``, each field (B,)"""
+    """Current progress through the episode: the task's ``progress_type``, each field (B,)"""
     progress_before: Any
-    """And a control step ago"""
+    """The progress one control step ago"""
     activations: Array
     """Activations commanded in this step, (B, 42)"""
     time_left: Array
-    """Part of the episode that is left, 1 at its start and 0 at its end, (B,)"""
+    """Fraction of the episode that is left, 1 at its start and 0 at its end, (B,)"""
     control_dt: float
     """Duration of a control step [s]"""
     body: Body
@@ -76,11 +76,11 @@ def _only(columns: Any, envs: slice) -> Any:
 
 
 class NoProgress(NamedTuple):
-    """The progress of tasks that ask for nothing but poses."""
+    """The progress of tasks that use only poses."""
 
 
 def follow_nothing(situation: Situation, state: State) -> NoProgress:
-    """Return no numbers."""
+    """Return no progress."""
     return NoProgress()
 
 
@@ -96,38 +96,38 @@ class Task:
     duration : float
         Simulated time of an episode [s].
     initial_states : dict of str to callable
-        By name of the ``spread``, what writes a new start into an environment and returns the activations that the
-        muscles have reached in it, (42,), or None where they are at rest; see `elastica_gym.envs.initial_states`.
+        By name of the ``spread``, functions that write an initial state into an environment and return the muscles'
+        activations in it, (42,), or None if they are at rest; see `elastica_gym.envs.initial_states`.
     goal_type : type
-        A NamedTuple of the numbers that a goal is.
+        A NamedTuple of the numbers of a goal.
     sample_goal : callable
-        From a generator and the situation of one environment at reset, its goal: a ``goal_type`` of floats.
+        From a generator and the situation of one environment at reset, returns its goal: a ``goal_type`` of floats.
     goal_blocks : tuple of Block
-        What ``observe_goal`` returns.
+        The blocks that ``observe_goal`` returns.
     observe_goal : callable
-        From a situation, what the animal observes of its goal, in the frame of its heading, (B, g).
+        From a situation, returns the observation of the goal, in the frame of the animal's heading, (B, g).
     reward_terms : dict of str to callable
-        From a situation, each term before its weight, (B,).
+        From a situation, each returns an unweighted term, (B,).
     reward_weights : dict of str to float
-        Weight of each term, and of ``diverged``, which is 1 where the simulation has diverged.
+        Weight of each term, and of ``diverged``, which is 1 if the simulation has diverged.
     progress_type : type
-        A NamedTuple of the numbers that the task follows through an episode; by default none.
+        A NamedTuple of the numbers that the task updates through an episode; by default none.
     follow : callable
-        From a situation and the State, those numbers, (B,) each, with ``progress`` as of the last step. It is called at
-        reset too, when all of the episode is left and ``progress`` is zero.
+        From a situation and the State, returns those numbers, (B,) each; the situation's ``progress`` is that of the
+        last step. Also called at reset, when all of the episode is left and ``progress`` is zero.
     distance : callable
-        From a situation, how far the animal has come [m], (B,).
+        From a situation, returns how far the animal has come [m], (B,).
     succeeds : callable
-        From a situation, whether the task is done, (B,) bool.
+        From a situation, returns whether the task is done, (B,) bool.
     ends_on_success : bool
         Whether an episode ends with success.
     failures : dict of str to callable
-        By its name among the ``termination_reasons``, from a situation, whether the task has failed, which ends the
-        episode, (B,) bool.
+        By their names in ``termination_reasons``, functions that return from a situation whether the task has failed,
+        which ends the episode, (B,) bool.
     target : callable
-        From a ``goal_type`` of (B,) each, the target's position in the lab [m], (B, 3), or None if it has none.
+        From a ``goal_type`` of (B,) each, returns the target's position in the lab [m], (B, 3), or None if it has none.
     description : str
-        What the task is about, in Markdown; `elastica_gym.envs.document` opens with it.
+        Description of the task, in Markdown, with which `elastica_gym.envs.document` begins.
     """
 
     name: str
@@ -151,7 +151,7 @@ class Task:
 
     def __post_init__(self) -> None:
         if not self.initial_states:
-            raise ValueError("initial_states must have at least one way to draw a start")
+            raise ValueError("initial_states must have at least one entry, not none")
         weighted = {*self.reward_terms, "diverged"}
         if set(self.reward_weights) != weighted:
             raise ValueError(
@@ -167,35 +167,35 @@ class Task:
 
     @property
     def termination_reasons(self) -> tuple[str, ...]:
-        """Names of the reasons why an episode ends, by number: those of `TerminationReason`, then the failures."""
+        """Names of the termination reasons by number: those of `TerminationReason`, then the failures."""
         return (*(reason.name.lower() for reason in TerminationReason), *self.failures)
 
     @functools.cached_property
     def goal_layout(self) -> Layout:
-        """Layout of what ``observe_goal`` returns."""
+        """Layout of the goal's observation."""
         return Layout(self.goal_blocks)
 
     def layout(self, body: Body) -> Layout:
-        """Return the layout of what an animal of this task observes."""
+        """Return the layout of the observations in this task."""
         clock = f"sine and cosine of a clock with a period of {CLOCK_PERIOD:g} s"
         return Layout(
             [
                 *body.blocks(),
                 Block("clock", ("sine", "cosine"), -1.0, 1.0, "1", clock),
-                single("time_left", 0.0, 1.0, "1", "part of the episode that is left"),
+                single("time_left", 0.0, 1.0, "1", "fraction of the episode that is left"),
                 *self.goal_blocks,
             ]
         )
 
 
 def in_heading_frame(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:
-    """Return the forward and right component of horizontal vectors (x, z), in the frame of the heading, (B,) each."""
+    """Return the forward and right components of horizontal vectors (x, z), in the frame of the heading, (B,) each."""
     hx, hz = situation.pose.heading[:, 0], situation.pose.heading[:, 1]
     return x * hx + z * hz, z * hx - x * hz
 
 
 def way_to(situation: Situation, x: Array, z: Array) -> tuple[Array, Array]:
-    """Return the way from the head to a place, forward and right, in body lengths, (B,) each."""
+    """Return the vector from the head to a place, forward and right, in body lengths, (B,) each."""
     s, length = situation, situation.body.sensors.length
     return in_heading_frame(s, (x - s.pose.head[:, 0]) / length, (z - s.pose.head[:, 2]) / length)
 
@@ -212,7 +212,7 @@ def on_the_ground(x: Array, z: Array) -> Array:
 
 
 def no_target(goal: Any) -> None:
-    """Return None: there is no place to show, but a direction or an object."""
+    """Return None: the task has a direction or an object, but no place to show."""
 
 
 def has_toppled(situation: Situation) -> Mask:
@@ -221,12 +221,12 @@ def has_toppled(situation: Situation) -> Mask:
 
 
 def toppled(situation: Situation) -> Array:
-    """Return 1 where the animal has rolled or pitched by more than 60 degrees, (B,)."""
+    """Return 1 if the animal has rolled or pitched by more than 60 degrees, (B,)."""
     return has_toppled(situation).astype(np.float64)
 
 
 def effort(situation: Situation) -> Array:
     """Return minus the mean square activation times the duration of the step [s], (B,)."""
     a = situation.activations
-    # one after the other: the order of summation must not depend on the size of the batch
+    # summed one by one: the order of summation must not depend on the size of the batch
     return -(a * a).cumsum(axis=1)[:, -1] / a.shape[1] * situation.control_dt

@@ -176,7 +176,7 @@ def test_state_of_an_environment_made_otherwise_is_refused(any_id, make_vec, cha
     env = make_vec(any_id)
     env.reset(seed=0)
     before = env.get_state()
-    with pytest.raises(ValueError, match="the state was taken where"):
+    with pytest.raises(ValueError, match="the state is of an environment whose"):
         env.set_state(make_vec(any_id, **{"duration": SHORT, **changed}).get_state())
     assert_same(before["physics"].values(), env.get_state()["physics"].values())
 

@@ -1,1 +1,1 @@
-"""The tasks, a file each: the specification first, then its code."""
+"""The tasks, one file each: the specification first, then its code."""

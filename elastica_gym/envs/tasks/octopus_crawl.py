@@ -1,8 +1,8 @@
 """OctopusCrawl: crawl as far as you can in a commanded direction in 10 s.
 
-The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground that holds it alike in all
-directions. It is told a direction, any one, and has to pull its heavy head there with two arms. Its object
-stands somewhere on the other side.
+The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground with isotropic friction. It observes
+a commanded direction and has to pull its heavy head there with two arms. Its object stands somewhere on
+the other side.
 
 Version history
 ---------------
@@ -32,28 +32,28 @@ from ..task import (
 )
 
 FAR = 0.5
-"""Way that counts as success, in body lengths"""
+"""Distance that counts as success, in body lengths"""
 
 
 class Goal(NamedTuple):
-    """Where to go, and where from."""
+    """Direction to go, and place of the start."""
 
     home_x: Array
-    """Where the head was at the start [m]"""
+    """Place of the head at the start along x [m]"""
     home_z: Array
-    """The same [m]"""
+    """The same along z [m]"""
     direction_x: Array
     """Direction to go, along x"""
     direction_z: Array
     """The same along z"""
     start_x: Array
-    """Where the centre of mass was at the start [m]"""
+    """Place of the centre of mass at the start along x [m]"""
     start_z: Array
-    """The same [m]"""
+    """The same along z [m]"""
 
 
 def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
-    """Return a direction to go, uniform within 90 degrees of straight away from the object."""
+    """Return a direction to go, uniform within 90 degrees of directly away from the object."""
     head, centre = situation.pose.head[0, [0, 2]], situation.pose.centre[0, [0, 2]]
     x, z = situation.pose.objects[0, 0, [0, 2]] - head
     angle = np.arctan2(-z, -x) + rng.uniform(-0.5 * np.pi, 0.5 * np.pi)
@@ -61,7 +61,7 @@ def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
 
 
 def observe_goal(situation: Situation) -> Array:
-    """Return the direction to go, forward and right, and the way home, forward and right, (B, 4)."""
+    """Return the direction to go and the vector home, forward and right each, (B, 4)."""
     goal = situation.goal
     direction = in_heading_frame(situation, goal.direction_x, goal.direction_z)
     return np.stack([*direction, *way_to(situation, goal.home_x, goal.home_z)], axis=1)
@@ -72,18 +72,18 @@ def _along(goal: Goal, centre: Array) -> Array:
 
 
 def distance(situation: Situation) -> Array:
-    """Return how far the centre of mass has come in the commanded direction [m], (B,)."""
+    """Return how far the centre of mass has moved in the commanded direction [m], (B,)."""
     return _along(situation.goal, situation.pose.centre)
 
 
 def forward(situation: Situation) -> Array:
-    """Return the way made in the commanded direction in this step, in body lengths, (B,)."""
+    """Return the displacement in the commanded direction in this step, in body lengths, (B,)."""
     made = distance(situation) - _along(situation.goal, situation.before.centre)
     return made / situation.body.sensors.length
 
 
 def succeeds(situation: Situation) -> Mask:
-    """Return whether the animal has come half a body length, (B,) bool."""
+    """Return whether the animal has moved half a body length, (B,) bool."""
     return distance(situation) >= FAR * situation.body.sensors.length
 
 

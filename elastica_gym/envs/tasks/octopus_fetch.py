@@ -1,19 +1,18 @@
 """OctopusFetch: crawl to the object, grab it and bring it home, within 20 s.
 
-The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground that holds it alike in all directions, and
-a cylinder of 4 kg, 0.6 m high and 0.1 m thick, that stands free somewhere around it. Home is where the head is
-at the start: the animal has to crawl to the object, move it, wrap an arm around it and come back with it.
+The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground with isotropic friction, and a free-standing
+cylinder of 4 kg, 0.6 m high and 0.1 m thick, somewhere around it. Home is the place of the head at the start: the
+animal has to crawl to the object, move it, wrap an arm around it and return with it.
 
 Notes
 -----
 The terms are those of OctopusMove, OctopusGrab and OctopusReturn, where they are explained. The object is grabbed
-when an arm spans 200 degrees or more around its axis at the ends of all control steps in 0.5 s, and let go when no
-arm has spanned 150 degrees for more than 0.2 s. Success is when all of this is so: at one moment the head has been
-0.2 m and the centre of mass 0.1 m from where it was at the start; the object has been moved by 0.1 m while it stood
-and was touched; it is held; the head is within 0.1 m of home, and the object within 0.3 m of the head.
-``scripts/score.py`` asks for more: that the surfaces of head and object have been within 0.05 m, and that the arm
-that has grabbed is the one that holds. All but the last six terms are differences of what is so far, so doing a thing
-again earns nothing.
+when an arm spans 200 degrees or more around its axis at the ends of all control steps in 0.5 s, and released when no
+arm has spanned 150 degrees for more than 0.2 s. Success requires all of the following: the head has been 0.2 m and
+the centre of mass 0.1 m from its start at the same time; the object has been moved by 0.1 m while it stood and was
+touched; it is held; the head is within 0.1 m of home, and the object within 0.3 m of the head. ``scripts/score.py``
+requires more: the surfaces of head and object have been within 0.05 m, and the arm that grabbed is the one that holds.
+All but the last six terms are increments of progress so far, so repeating an action earns nothing.
 
 Version history
 ---------------
@@ -46,7 +45,7 @@ from ..task import Mask, Situation, effort, toppled
 
 
 def observe_goal(situation: Situation) -> Array:
-    """Return the direction to go and the way home, forward and right, (B, 4)."""
+    """Return the direction to go and the vector home, forward and right each, (B, 4)."""
     there, back = np.stack(direction_to_object(situation)), np.stack(direction_home(situation))
     back = np.where(has_crawled(situation), back, -back)
     return np.stack([*np.where(situation.progress.grabbed == 1.0, back, there), *way_home(situation)], axis=1)
@@ -58,12 +57,12 @@ def succeeds(situation: Situation) -> Mask:
 
 
 def success(situation: Situation) -> Array:
-    """Return 1 where the object has been fetched, (B,)."""
+    """Return 1 if the object has been fetched, (B,)."""
     return succeeds(situation).astype(np.float64)
 
 
 def early(situation: Situation) -> Array:
-    """Return the part of the episode that is left where the object has been fetched, else 0, (B,)."""
+    """Return the fraction of the episode that is left if the object has been fetched, else 0, (B,)."""
     return success(situation) * situation.time_left
 
 

@@ -1,17 +1,17 @@
-"""OctopusGrab: wrap an arm around the object by 200 degrees and hold it so for 0.5 s, within 10 s.
+"""OctopusGrab: wrap an arm around the object by 200 degrees and hold it like that for 0.5 s, within 10 s.
 
-The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground that holds it alike in all directions, and
-a cylinder of 4 kg, 0.6 m high and 0.1 m thick, that stands free. An arm that bends at full strength with the
-object in its bend holds it; but the object has to be there.
+The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground with isotropic friction, and a free-standing
+cylinder of 4 kg, 0.6 m high and 0.1 m thick. An arm that bends at full strength with the object in its bend holds
+it, but the object has to be in the bend first.
 
 Notes
 -----
-An arm's inner half is the one next to the head. The angle is that which the touching elements of an arm, at least
-five, span around the object's axis, from the first to the last of them, followed along the arm; of two arms the
-larger. Touching are surfaces with less than 2 mm between them. What an arm winds around the object is that angle of
-all its elements, each part of it times how near they are: 1 where they touch, falling to 0 at a gap of 0.15 m. The
-object is grabbed when an arm spans 200 degrees or more at the ends of all control steps in 0.5 s. Approach, wind and
-wrap are differences of what is so far, so letting go and taking hold again earns nothing.
+An arm's inner half is the one next to the head. An arm spans the angle around the object's axis from the first to
+the last of its touching elements, at least five, followed along the arm; the larger angle of two arms counts.
+Elements touch if the gap between surfaces is less than 2 mm. The angle that an arm winds is the same over all its
+elements, each part weighted by proximity: 1 where they touch, falling to 0 at a gap of 0.15 m. The object is grabbed
+when an arm spans 200 degrees or more at the ends of all control steps in 0.5 s. Approach, wind and wrap are
+increments of progress so far, so releasing and grabbing again earns nothing.
 
 Version history
 ---------------
@@ -33,12 +33,12 @@ def succeeds(situation: Situation) -> Mask:
 
 
 def success(situation: Situation) -> Array:
-    """Return 1 where the object is grabbed, (B,)."""
+    """Return 1 if the object is grabbed, (B,)."""
     return succeeds(situation).astype(np.float64)
 
 
 def early(situation: Situation) -> Array:
-    """Return the part of the episode that is left where the object is grabbed, else 0, (B,)."""
+    """Return the fraction of the episode that is left if the object is grabbed, else 0, (B,)."""
     return success(situation) * situation.time_left
 
 

@@ -1,14 +1,14 @@
-"""OctopusMove: push or pull the object 10 cm without felling it, within 10 s.
+"""OctopusMove: push or pull the object 10 cm without knocking it over, within 10 s.
 
-The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground that holds it alike in all directions, and
-a cylinder of 4 kg, 0.6 m high and 0.1 m thick, that stands free. It has to be moved while it stands and is
-touched: what topples, or slides on by itself, does not count.
+The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground with isotropic friction, and a free-standing
+cylinder of 4 kg, 0.6 m high and 0.1 m thick. It has to be moved while it stands and is touched: toppling and
+sliding on by itself do not count.
 
 Notes
 -----
-An arm's inner half is the one next to the head. The way of the object is from where its base was: steps add to it at
-whose end the animal touches it, and it leans by no more than 45 degrees. Approach and move are differences of what is
-so far, so going to and fro earns nothing.
+An arm's inner half is the one next to the head. The object's displacement is that of its base, summed over the steps
+that end with the animal touching it and with a lean of at most 45 degrees. Approach and move are increments of
+progress so far, so moving back and forth earns nothing.
 
 Version history
 ---------------
@@ -25,12 +25,12 @@ from ..task import HOME, Situation, effort, toppled
 
 
 def success(situation: Situation) -> Array:
-    """Return 1 where the object has been moved far enough, (B,)."""
+    """Return 1 if the object has been moved far enough, (B,)."""
     return has_moved(situation).astype(np.float64)
 
 
 def early(situation: Situation) -> Array:
-    """Return the part of the episode that is left where the object has been moved far enough, else 0, (B,)."""
+    """Return the fraction of the episode that is left if the object has been moved far enough, else 0, (B,)."""
     return success(situation) * situation.time_left
 
 

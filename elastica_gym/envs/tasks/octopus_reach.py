@@ -1,13 +1,13 @@
 """OctopusReach: crawl to the object and touch it with the head or an arm within 10 s.
 
-The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground that holds it alike in all
-directions, and a cylinder of 4 kg, 0.6 m high and 0.1 m thick, that stands free: on the arc from straight
-ahead of the head to its right, the side away from the arms, or anywhere around it.
+The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground with isotropic friction, and a
+free-standing cylinder of 4 kg, 0.6 m high and 0.1 m thick: on the arc from straight ahead of the head to
+its right, the side away from the arms, or anywhere around it.
 
 Notes
 -----
-The gap is to the object as rods meet it, with domes of 0.05 m on its ends. Approaches add up to what it has shrunk in
-all, so hovering earns nothing.
+The gap is to the object as rods touch it, with domes of 0.05 m on its ends. Approaches add up to the total decrease of
+the gap, so hovering earns nothing.
 
 Version history
 ---------------
@@ -28,23 +28,23 @@ from ..task import HOME, Mask, Situation, Task, effort, has_toppled, no_target, 
 
 
 class Goal(NamedTuple):
-    """Where it starts from."""
+    """The situation at the start."""
 
     home_x: Array
-    """Where the head was at the start [m]"""
+    """Place of the head at the start along x [m]"""
     home_z: Array
-    """The same [m]"""
+    """The same along z [m]"""
     gap: Array
     """Gap to the object at the start [m]"""
 
 
 def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
-    """Return where the head is, and the gap to the object."""
+    """Return the place of the head, and the gap to the object."""
     return Goal._make([*situation.pose.head[0, [0, 2]], situation.pose.gaps[0, 0]])
 
 
 def approach(situation: Situation) -> Array:
-    """Return by how much the gap to the object has shrunk in this step, in body lengths, (B,)."""
+    """Return the decrease of the gap to the object in this step, in body lengths, (B,)."""
     return (situation.before.gaps[:, 0] - situation.pose.gaps[:, 0]) / situation.body.sensors.length
 
 
@@ -54,17 +54,17 @@ def succeeds(situation: Situation) -> Mask:
 
 
 def success(situation: Situation) -> Array:
-    """Return 1 where the animal touches the object, (B,)."""
+    """Return 1 if the animal touches the object, (B,)."""
     return succeeds(situation).astype(np.float64)
 
 
 def early(situation: Situation) -> Array:
-    """Return the part of the episode that is left where the animal touches the object, else 0, (B,)."""
+    """Return the fraction of the episode that is left if the animal touches the object, else 0, (B,)."""
     return success(situation) * situation.time_left
 
 
 def distance(situation: Situation) -> Array:
-    """Return by how much the gap has shrunk since reset [m], (B,)."""
+    """Return the decrease of the gap since reset [m], (B,)."""
     return situation.goal.gap - situation.pose.gaps[:, 0]
 
 

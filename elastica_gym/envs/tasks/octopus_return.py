@@ -1,14 +1,15 @@
 """OctopusReturn: carry the object home, held in an arm, within 10 s.
 
-The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground that holds it alike in all directions, and
-a cylinder of 4 kg, 0.6 m high and 0.1 m thick, that one of its arms holds from the start. Home is elsewhere:
-the head has to get there without letting go.
+The two-arm octopus of 1 m (`elastica_gym.bodies.octopus`) on ground with isotropic friction, and a cylinder of 4 kg,
+0.6 m high and 0.1 m thick, which one of its arms holds from the start. Home is elsewhere: the head has to get there
+without releasing the object.
 
 Notes
 -----
-The object is held where the touching elements of an arm, at least five, span 150 degrees around its axis (see
-`.octopus_grab`), and let go when they have spanned less at the end of each control step for more than 0.2 s. Home is
-a difference of what is so far, so going to and fro earns nothing; what is let go costs what it had earned.
+The object is held while the touching elements of an arm, at least five, span 150 degrees around its axis (see
+`.octopus_grab`), and released when they have spanned less at the end of each control step for more than 0.2 s. The
+term home is an increment of progress so far, so moving back and forth earns nothing; a release costs what had been
+earned.
 
 Version history
 ---------------
@@ -38,34 +39,34 @@ AWAY = (0.2, 0.6)
 
 
 def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
-    """Return a goal whose home is at 0.2 to 0.6 m from the head, in any direction."""
+    """Return a goal with its home at 0.2 to 0.6 m from the head, in any direction."""
     away, bearing = rng.uniform(*AWAY), rng.uniform(-np.pi, np.pi)
     x, _, z = situation.pose.head[0]
     return goal_with_home(situation, x + away * np.cos(bearing), z + away * np.sin(bearing))
 
 
 def observe_goal(situation: Situation) -> Array:
-    """Return the direction home, forward and right, and the way home, forward and right, (B, 4)."""
+    """Return the direction home and the vector home, forward and right each, (B, 4)."""
     return np.stack([*direction_home(situation), *way_home(situation)], axis=1)
 
 
 def success(situation: Situation) -> Array:
-    """Return 1 where the animal is at home with its object, (B,)."""
+    """Return 1 if the animal is at home with its object, (B,)."""
     return is_at_home(situation).astype(np.float64)
 
 
 def early(situation: Situation) -> Array:
-    """Return the part of the episode that is left where the animal is at home with its object, else 0, (B,)."""
+    """Return the fraction of the episode that is left if the animal is at home with its object, else 0, (B,)."""
     return success(situation) * situation.time_left
 
 
 def dropped(situation: Situation) -> Array:
-    """Return 1 where the object has been let go in this step, (B,)."""
+    """Return 1 if the object was released in this step, (B,)."""
     return np.maximum(situation.progress_before.grabbed - situation.progress.grabbed, 0.0)
 
 
 def target(goal: Goal) -> Array:
-    """Return where home is, on the ground [m], (B, 3)."""
+    """Return the place of home on the ground [m], (B, 3)."""
     return on_the_ground(goal.home_x, goal.home_z)
 
 
@@ -77,7 +78,7 @@ TASK = handling_task(
     sample_goal=sample_goal,
     goal_blocks=(
         DIRECTION._replace(meaning="direction home: forward and right of a unit vector"),
-        HOME._replace(meaning="way from the head to its home: forward and right"),
+        HOME._replace(meaning="vector from the head to its home: forward and right"),
     ),
     observe_goal=observe_goal,
     reward_terms={

@@ -1,11 +1,11 @@
 """SnakeForward: go as far as you can along your initial heading in 10 s.
 
-A snake of 0.35 m (`elastica_gym.bodies.snake`) lies on ground that holds it harder sideways than forward.
-It crawls by what waves of bending it finds.
+A snake of 0.35 m (`elastica_gym.bodies.snake`) lies on ground with higher friction sideways than forward.
+It has to find waves of bending by which it crawls.
 
 Version history
 ---------------
-v1: firm ground (stiffness and damping), on which no part of the body sinks in; the body touches itself.
+v1: firm ground (stiffness and damping), into which no part of the body sinks; self-contact.
 v0: the first; withdrawn.
 """
 
@@ -20,20 +20,20 @@ from ..task import DIRECTION, Mask, Situation, Task, effort, in_heading_frame, n
 
 
 class Goal(NamedTuple):
-    """Where to go."""
+    """Direction to go, and place of the start."""
 
     direction_x: Array
     """Direction to go, which is the initial heading, along x"""
     direction_z: Array
     """The same along z"""
     start_x: Array
-    """Where the centre of mass was at the start [m]"""
+    """Place of the centre of mass at the start along x [m]"""
     start_z: Array
-    """The same [m]"""
+    """The same along z [m]"""
 
 
 def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
-    """Return the initial heading, and where the centre of mass is."""
+    """Return the initial heading, and the place of the centre of mass."""
     return Goal._make([*situation.pose.heading[0], *situation.pose.centre[0, [0, 2]]])
 
 
@@ -48,12 +48,12 @@ def _along(goal: Goal, centre: Array) -> Array:
 
 
 def distance(situation: Situation) -> Array:
-    """Return how far the centre of mass has come along the initial heading [m], (B,)."""
+    """Return how far the centre of mass has moved along the initial heading [m], (B,)."""
     return _along(situation.goal, situation.pose.centre)
 
 
 def forward(situation: Situation) -> Array:
-    """Return the way made along the initial heading in this step, in body lengths, (B,)."""
+    """Return the displacement along the initial heading in this step, in body lengths, (B,)."""
     made = distance(situation) - _along(situation.goal, situation.before.centre)
     return made / situation.body.sensors.length
 
@@ -64,12 +64,12 @@ def _off_course(goal: Goal, heading: Array) -> Array:
 
 
 def heading(situation: Situation) -> Array:
-    """Return by how much the angle between heading and initial heading has shrunk in this step [rad], (B,)."""
+    """Return the decrease of the angle between heading and initial heading in this step [rad], (B,)."""
     return _off_course(situation.goal, situation.before.heading) - _off_course(situation.goal, situation.pose.heading)
 
 
 def succeeds(situation: Situation) -> Mask:
-    """Return whether the animal has come a body length, (B,) bool."""
+    """Return whether the animal has moved one body length, (B,) bool."""
     return distance(situation) >= situation.body.sensors.length
 
 

@@ -1,16 +1,16 @@
 """SnakeReach: bring the head to a target around you within 20 s.
 
 The snake of SnakeForward, and a place on the ground, drawn uniformly over the ring between 0.5 and 1.5
-body lengths around its centre of mass, in any direction: behind it as often as before it.
+body lengths around its centre of mass, in any direction: behind it as often as in front of it.
 
 Notes
 -----
-Approaches add up to the way made, wherever the head went between, so hovering earns nothing. Distances are
-horizontal.
+Approaches add up to the total decrease in distance, whatever path the head takes, so hovering earns nothing. Distances
+are horizontal.
 
 Version history
 ---------------
-v1: firm ground (stiffness and damping), on which no part of the body sinks in; the body touches itself.
+v1: firm ground (stiffness and damping), into which no part of the body sinks; self-contact.
 v0: the first; withdrawn.
 """
 
@@ -34,9 +34,9 @@ class Goal(NamedTuple):
     """A target."""
 
     x: Array
-    """Where it is [m]"""
+    """Its place along x [m]"""
     z: Array
-    """The same [m]"""
+    """The same along z [m]"""
     way: Array
     """Distance of the head from it at the start [m]"""
 
@@ -61,7 +61,7 @@ def gap(situation: Situation) -> Array:
 
 
 def observe_goal(situation: Situation) -> Array:
-    """Return the way from head to target, forward and right, and its length, in body lengths, (B, 3)."""
+    """Return the vector from head to target, forward and right, and its length, in body lengths, (B, 3)."""
     return np.stack([*way_to(situation, situation.goal.x, situation.goal.z), gap(situation)], axis=1)
 
 
@@ -76,12 +76,12 @@ def succeeds(situation: Situation) -> Mask:
 
 
 def success(situation: Situation) -> Array:
-    """Return 1 where the head is at the target, (B,)."""
+    """Return 1 if the head is at the target, (B,)."""
     return succeeds(situation).astype(np.float64)
 
 
 def early(situation: Situation) -> Array:
-    """Return the part of the episode that is left where the head is at the target, else 0, (B,)."""
+    """Return the fraction of the episode that is left if the head is at the target, else 0, (B,)."""
     return success(situation) * situation.time_left
 
 
@@ -104,7 +104,7 @@ TASK = Task(
     goal_type=Goal,
     sample_goal=sample_goal,
     goal_blocks=(
-        Block("goal", ("forward", "right"), -4.0, 4.0, "body length", "way from head to target: forward and right"),
+        Block("goal", ("forward", "right"), -4.0, 4.0, "body length", "vector from head to target: forward and right"),
         single("goal/gap", 0.0, 4.0, "body length", "its length"),
     ),
     observe_goal=observe_goal,

@@ -1,17 +1,17 @@
 """SnakeSteer: go in a commanded direction at a commanded speed, both of which change on the way, for 20 s.
 
-A snake of 0.35 m (`elastica_gym.bodies.snake`) lies on ground that holds it harder sideways than forward.
-It is told a direction and a speed, and once or twice on the way others.
+A snake of 0.35 m (`elastica_gym.bodies.snake`) lies on ground with higher friction sideways than forward.
+It observes a commanded direction and speed, which change once or twice on the way.
 
 Notes
 -----
 The error is the length of the difference between the velocity of the centre of mass and the commanded one, with the
-former smoothed over a time constant of 1 s, since a gait goes faster and slower within its period. A new command
-changes the angle at once, which is not paid for.
+former smoothed over a time constant of 1 s, since a gait's speed varies within its period. A new command changes the
+angle at once, which is not rewarded.
 
 Version history
 ---------------
-v1: firm ground (stiffness and damping), on which no part of the body sinks in; the body touches itself.
+v1: firm ground (stiffness and damping), into which no part of the body sinks; self-contact.
 v0: the first; withdrawn.
 """
 
@@ -30,22 +30,22 @@ SPEEDS = (0.05, 0.15)
 FIRST_TURN, NEXT_TURN = 0.25 * np.pi, 0.5 * np.pi
 """Largest angle between the heading and the first direction, and between a direction and the next [rad]"""
 CHANGES = ((0.3, 0.5), (0.65, 0.85))
-"""When the first and second change of command come, as part of the episode"""
+"""Ranges of the times of the first and second change of command, as fractions of the episode"""
 SMOOTHING = 1.0
 """Time constant over which velocity is smoothed [s]"""
 TOLERANCE = 0.05
-"""Error at which following pays 1/e [body lengths/s]"""
+"""Error at which the reward for following is 1/e [body lengths/s]"""
 CLOSE = 0.25
-"""Mean error that counts as success, in parts of the commanded speed"""
+"""Mean error that counts as success, as a fraction of the commanded speed"""
 
 
 class Goal(NamedTuple):
-    """Three commands, each a direction and a speed, and when they change."""
+    """Three commands, each a direction and a speed, and the times at which they change."""
 
     first: Array
     """First direction, as an angle from x to z [rad]"""
     first_speed: Array
-    """Speed to go at in it [body lengths/s]"""
+    """Its speed [body lengths/s]"""
     second: Array
     """Second direction [rad]"""
     second_speed: Array
@@ -55,32 +55,32 @@ class Goal(NamedTuple):
     third_speed: Array
     """Its speed [body lengths/s]"""
     first_change: Array
-    """When the second command comes, as part of the episode"""
+    """Time of the second command, as a fraction of the episode"""
     second_change: Array
-    """When the third comes; above 1 if it never does"""
+    """Time of the third command, likewise; above 1 for never"""
 
 
 class Course(NamedTuple):
-    """How each of B snakes follows its commands: a situation's ``progress``, (B,) each."""
+    """How well each of B snakes follows its commands, as a situation's ``progress``, (B,) each."""
 
     velocity_x: Array
     """Smoothed velocity of the centre of mass along x [body lengths/s]"""
     velocity_z: Array
     """The same along z [body lengths/s]"""
     error: Array
-    """Integral over time of how far it is from the commanded one [body lengths]"""
+    """Integral over time of its distance from the commanded velocity [body lengths]"""
     asked: Array
     """Integral over time of the commanded speed [body lengths]"""
     along: Array
-    """Way of the centre of mass in the directions commanded at the time [body lengths]"""
+    """Displacement of the centre of mass along the directions commanded at the time [body lengths]"""
 
 
 def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
     """Return commands that turn from the heading, and from one to the next, by random angles.
 
-    The first direction is within 45 degrees of the heading, each later one within 90 degrees of that before it; speeds
-    are uniform from 0.05 to 0.15 body lengths/s. The first change comes when 0.3 to 0.5 of the episode are over; every
-    other episode has a second one, at 0.65 to 0.85.
+    The first direction is within 45 degrees of the heading, each later one within 90 degrees of the one before; speeds
+    are uniform from 0.05 to 0.15 body lengths/s. The first change comes at 0.3 to 0.5 of the episode; half of the
+    episodes have a second one, at 0.65 to 0.85.
     """
     x, z = situation.pose.heading[0]
     turns = rng.uniform(-1.0, 1.0, 3) * np.array([FIRST_TURN, NEXT_TURN, NEXT_TURN])
@@ -94,7 +94,7 @@ def sample_goal(rng: np.random.Generator, situation: Situation) -> Goal:
 
 
 def command(situation: Situation) -> tuple[Array, Array, Array]:
-    """Return the direction to go (x, z) and the speed [body lengths/s] of the time, (B,) each."""
+    """Return the current direction to go (x, z) and speed [body lengths/s], (B,) each."""
     goal, part = situation.goal, 1.0 - situation.time_left
 
     def current(first: Array, second: Array, third: Array) -> Array:
@@ -113,11 +113,11 @@ def _off(situation: Situation, course: Course) -> Array:
 
 
 def follow(situation: Situation, state: State) -> Course:
-    """Return how the commands are followed."""
+    """Return how well the commands are followed."""
     s, old = situation, situation.progress
     x, z, speed = command(s)
     way = (s.pose.centre - s.before.centre) / s.body.sensors.length
-    # at reset nothing has been done yet, and velocity starts from rest
+    # at reset, integrals and smoothed velocity are zero
     lasted = np.where(s.time_left < 1.0, s.control_dt, 0.0)
     share = 1.0 - np.exp(-lasted / SMOOTHING)
     new = old._replace(
@@ -140,13 +140,13 @@ def observe_goal(situation: Situation) -> Array:
 
 
 def following(situation: Situation) -> Array:
-    """Return how well velocity follows the command, 1 where it does, times the duration of the step [s], (B,)."""
+    """Return how well velocity follows the command, 1 if exactly, times the duration of the step [s], (B,)."""
     off = _off(situation, situation.progress) / TOLERANCE
     return np.exp(-off * off) * situation.control_dt
 
 
 def heading(situation: Situation) -> Array:
-    """Return by how much the angle between heading and commanded direction has shrunk in this step [rad], (B,)."""
+    """Return the decrease of the angle between heading and commanded direction in this step [rad], (B,)."""
     x, z, _ = command(situation)
 
     def angle(heading: Array) -> Array:
@@ -156,13 +156,13 @@ def heading(situation: Situation) -> Array:
 
 
 def succeeds(situation: Situation) -> Mask:
-    """Return whether the error is a quarter of the commanded speed or less on average, (B,) bool."""
+    """Return whether the mean error is at most a quarter of the commanded speed, (B,) bool."""
     course = situation.progress
     return (course.error <= CLOSE * course.asked) & (course.asked > 0.0)
 
 
 def distance(situation: Situation) -> Array:
-    """Return the way made in the directions commanded at the time [m], (B,)."""
+    """Return the displacement along the directions commanded at the time [m], (B,)."""
     return situation.progress.along * situation.body.sensors.length
 
 
@@ -176,14 +176,14 @@ TASK = Task(
     sample_goal=sample_goal,
     goal_blocks=(
         DIRECTION,
-        single("goal/speed", 0.0, 1.0, "body lengths/s", "speed to go at"),
+        single("goal/speed", 0.0, 1.0, "body lengths/s", "commanded speed"),
         Block(
             "pace",
             ("forward", "right"),
             -4.0,
             4.0,
             "body lengths/s",
-            "velocity of the centre of mass, as it is followed: forward and right",
+            "smoothed velocity of the centre of mass: forward and right",
         ),
     ),
     observe_goal=observe_goal,
