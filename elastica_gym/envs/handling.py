@@ -45,7 +45,7 @@ AT_HOME = 0.1
 BROUGHT = 0.3
 """Distance of the object from the head that counts as brought along [m]"""
 TO_OBJECT = DIRECTION._replace(meaning="direction from the head to the object: forward and right of a unit vector")
-"""Direction observed in tasks of going to the object"""
+"""Observed direction to the object"""
 
 
 class Goal(NamedTuple):

@@ -1,6 +1,6 @@
-"""Looking at animals: recordings for rerun, and pictures and videos drawn offscreen.
+"""Visualisation: recordings for rerun, and pictures and videos drawn offscreen.
 
-Nothing here is imported by ``import elastica_gym``, and rerun and MuJoCo only when they are needed:
+``import elastica_gym`` imports nothing from here; rerun and MuJoCo are imported only when needed:
 ``pip install 'elastica-gym[viz]'``.
 """
 

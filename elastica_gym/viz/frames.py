@@ -1,8 +1,8 @@
 """Pictures and videos drawn offscreen by MuJoCo's renderer, which needs no window and no GPU.
 
-MuJoCo draws through EGL or OSMesa, which on Linux are packages of the system and not of Python:
+MuJoCo draws through EGL or OSMesa, which on Linux are system packages, not Python packages:
 ``apt-get install libegl1 libgl1-mesa-dri``, or ``libosmesa6``. The environment variable MUJOCO_GL
-(``egl`` or ``osmesa``) chooses; where it is not set and there is no display, what is found is taken.
+(``egl`` or ``osmesa``) chooses one; if it is not set, the first one found is used.
 """
 
 import ctypes.util
@@ -35,19 +35,19 @@ SUPERSAMPLING = 2
 """Pictures are drawn this many times larger and averaged down"""
 
 FIELD_OF_VIEW = 32.0
-"""Vertical angle that a picture shows [deg]"""
+"""Vertical field of view [deg]"""
 
 MARGIN = 1.25
-"""How much larger pictures are than what they have to show"""
+"""Size of a picture relative to its content"""
 
 FIGURES = 12_000
 """Largest number of bodies, such as capsules, in one picture"""
 
 REACH = 0.6
-"""How far from its middle an animal may be expected to stretch, in body lengths"""
+"""Expected reach of an animal from its middle, in body lengths"""
 
 FAR = 2.5
-"""How far from the animal's middle a camera that follows it has to see, in body lengths"""
+"""Distance from the animal's middle that a following camera has to show, in body lengths"""
 
 # the lab's (x, y, z) with y up are (y, z, x) in a world with z up, a rotation; lengths are body lengths
 # a lamp far away, since the shadows of a directional light leave a pattern on the ground
@@ -83,13 +83,13 @@ class Figure:
     Attributes
     ----------
     begin, end : Array
-        Where its elements begin and end [m], lab frame with y up, (M, 3) each; equal ones are spheres.
+        Ends of its elements [m], lab frame with y up, (M, 3) each; spheres if equal.
     radii : Array
         Radii of its elements [m], (M,) or a number.
     rgba : Array
         Colours from 0 to 1, (M, 4) or one for all.
     is_flat : bool
-        Whether elements end flat, as cylinders, rather than round, as capsules.
+        Whether elements are cylinders with flat ends, rather than capsules.
     """
 
     begin: Array
@@ -101,14 +101,14 @@ class Figure:
 
 @dataclass(frozen=True, kw_only=True)
 class Camera:
-    """Where the picture is taken from.
+    """The viewpoint of a picture.
 
     Attributes
     ----------
     look_at : Array
         The point in the middle of the picture [m], (3,).
     distance : float
-        How far the camera is from it [m].
+        Distance of the camera from it [m].
     azimuth : float
         Direction of view about the vertical; 0 looks along -z and 90 along +x [deg].
     elevation : float
@@ -124,8 +124,8 @@ class Camera:
 class Stage:
     """Ground, light and a renderer, for any number of pictures of one size.
 
-    Use it in a ``with`` statement, or call `close`. It belongs to its process: the threads with which the system draws
-    do not come along with a fork, so that no process can draw that was forked from one that has drawn.
+    Use it in a ``with`` statement, or call `close`. It belongs to its process: a process forked from one that has drawn
+    cannot draw, as the graphics library's threads do not survive a fork.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ class Stage:
     ImportError
         If MuJoCo is not installed.
     RuntimeError
-        If it finds nothing to draw with, or this process was forked from one that has drawn.
+        If there is no graphics library, or this process was forked from one that has drawn.
     """
 
     def __init__(self, *, width: int = 960, height: int = 540, unit: float = 1.0) -> None:
@@ -168,7 +168,7 @@ class Stage:
         self.close()
 
     def close(self) -> None:
-        """Free what the renderer holds."""
+        """Free the renderer."""
         if _drawing_process == os.getpid():
             self._renderer.close()
 
@@ -220,7 +220,7 @@ def figures(rollout: Rollout, moment: int) -> list[Figure]:
 
 
 def animal_of(rollout: Rollout, moment: int) -> Figure:
-    """Return the figure of the animal at one moment of a rollout, with a ball about a head that is a rod's end."""
+    """Return the figure of the animal at one moment of a rollout, with a ball around the head if it is a rod's end."""
     return animal(
         rollout.nodes[moment],
         rollout.radii[moment],
@@ -237,7 +237,7 @@ def objects(rollout: Rollout, moment: int) -> Figure:
 
 
 def home(rollout: Rollout, moment: int) -> list[Figure]:
-    """Return the figure of the disc that the head has to come back to, or none where there is no such place."""
+    """Return the figure of the disc to which the head has to return, or none if there is no home."""
     if rollout.home is None:
         return []
     begin = rollout.home[[moment]]
@@ -263,13 +263,13 @@ def animal(
     radii : Array
         Radii of its elements [m], (M,).
     elements_per_rod : tuple of int, optional
-        Number of elements of each rod; all in one if omitted.
+        Number of elements of each rod; if omitted, a single rod.
     head_node : int
-        Which of the nodes is the head.
+        Index of the head's node.
     color : tuple of float
-        Red, green and blue from 0 to 1, full at the head and paler the further from it along the body.
+        Red, green and blue from 0 to 1, full at the head and fading along the body.
     head : tuple of float, optional
-        Colour of a ball about the head, or None for none.
+        Colour of a ball around the head; None for no ball.
     """
     counts = elements_per_rod or (len(nodes) - 1,)
     if sum(counts) != len(radii) or sum(counts) + len(counts) != len(nodes):
@@ -287,26 +287,26 @@ def animal(
 
 
 def trail(rollout: Rollout, moment: int) -> Figure:
-    """Return the figure of the way over which the head has come up to a moment, a line on the ground."""
+    """Return the figure of the head's path up to a moment, a line on the ground."""
     thin = 0.2 * float(np.median(rollout.radii))
     if moment < 1:
         return line(np.zeros((1, 3)), thin)
-    # imported here: it takes longer than all else that `import elastica_gym` does
+    # imported here: it takes longer than the rest of `import elastica_gym`
     from scipy.interpolate import CubicSpline
 
-    # a smooth one through where it was at the ends of control steps, half sunk so that bodies are over it
+    # a smooth line through its places at the ends of control steps, half sunk so that bodies are above it
     fine = np.linspace(0, moment, 5 * moment + 1)
     path = CubicSpline(np.arange(moment + 1), rollout.head[: moment + 1])(fine)
     return line(path * [1.0, 0.0, 1.0] + [0.0, 0.3 * thin, 0.0], thin)
 
 
 def line(points: Array, radius: float, color: Color = HEAD) -> Figure:
-    """Return the figure of a line through points (K, 3), of a radius [m]."""
+    """Return the figure of a line through points (K, 3) with a radius [m]."""
     return Figure(begin=points[:-1], end=points[1:], radii=radius, rgba=(*color, 1.0))
 
 
 def ball(centre: Array, radius: float, color: Color = TARGET, alpha: float = 0.6) -> Figure:
-    """Return the figure of a ball about a point (3,), of a radius [m]."""
+    """Return the figure of a ball around a point (3,) with a radius [m]."""
     points = np.asarray(centre, dtype=float)[None]
     return Figure(begin=points, end=points, radii=radius, rgba=(*color, alpha))
 
@@ -327,15 +327,15 @@ def render_frames(
     ----------
     rollout : Rollout
     moments : sequence of int, optional
-        Which moments; all if omitted.
+        Indices of the moments; all if omitted.
     has_trail : bool
-        Whether to draw where the head has been.
+        Whether to draw the head's path.
     camera : Camera, optional
-        By default one that sees everything from the first to the last frame.
+        By default one that shows everything from the first to the last frame.
     width, height : int
         Size of the frames [pixels].
     show : callable, optional
-        Called after each frame with the fraction of them that is drawn.
+        Called after each frame with the fraction of frames drawn.
 
     Returns
     -------
@@ -344,7 +344,7 @@ def render_frames(
     """
     picked = list(range(len(rollout.step)) if moments is None else moments)
     if not picked or not set(picked) <= set(range(len(rollout.step))):
-        raise ValueError(f"moments must be some from 0 to {len(rollout.step) - 1}, not {picked}")
+        raise ValueError(f"moments must be indices from 0 to {len(rollout.step) - 1}, not {picked}")
     camera = camera or framing(outline(rollout, picked), width / height)
     frames = np.empty((len(picked), height, width, 3), dtype=np.uint8)
     with Stage(width=width, height=height, unit=rollout.body_length) as stage:
@@ -370,10 +370,10 @@ def _around(rollout: Rollout, moment: int) -> Array:
 
 
 def following(rollout: Rollout, moment: int, aspect: float) -> Camera:
-    """Return a camera that follows the animal, and has the objects and the target in view as long as they are near.
+    """Return a camera that follows the animal, and keeps objects and target in view while they are near.
 
-    It has room for the animal in any posture, rather than for the one that it has: so it keeps its distance while the
-    animal moves its limbs, and as nothing that it shows jumps, neither does it.
+    It leaves room for any posture of the animal, not only the current one, so it keeps its distance while the animal
+    moves its limbs. It moves continuously, as everything that it shows does.
     """
     middle = rollout.nodes[moment].mean(axis=0) * [1.0, 0.0, 1.0]
     angles = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
@@ -384,14 +384,14 @@ def following(rollout: Rollout, moment: int, aspect: float) -> Camera:
 
 
 def framing(points: Array, aspect: float, *, azimuth: float = 0.0, elevation: float = -50.0) -> Camera:
-    """Return a camera that sees all points (K, 3), in a picture ``aspect`` times as wide as high."""
+    """Return a camera that shows all points (K, 3), in a picture ``aspect`` times as wide as high."""
     az, el = np.deg2rad((azimuth, elevation))
     away = np.array([np.sin(az) * np.cos(el), np.sin(el), -np.cos(az) * np.cos(el)])
     right = np.array([np.cos(az), 0.0, np.sin(az)])
     up = np.cross(right, away)
     high = np.tan(np.deg2rad(0.5 * FIELD_OF_VIEW)) / MARGIN
     look_at = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    # what is near looks larger, so the middle of the picture is found in a few steps
+    # near points look larger, so the middle of the picture is found iteratively
     for _ in range(8):
         across, along, deep = (points - look_at) @ right, (points - look_at) @ up, (points - look_at) @ away
         distance = float(np.max(np.maximum(np.abs(across) / (aspect * high), np.abs(along) / high) - deep))
@@ -433,13 +433,13 @@ def write_video(frames: Image, path: str | Path, fps: float = 20.0) -> Path:
 
 
 _drawing_process: int | None = None
-"""The one that has made the first renderer, this one or one that it was forked from"""
+"""Process that created the first renderer: this one, or one from which it was forked"""
 
 _renderers: weakref.WeakSet[Any] = weakref.WeakSet()
-"""Those that are in use"""
+"""Renderers in use"""
 
 _inherited: list[Any] = []
-"""Renderers of the process that this one was forked from, kept since freeing them would wait for threads left behind"""
+"""Renderers inherited in a fork, kept since freeing them would wait for threads that did not survive it"""
 
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=lambda: _inherited.extend(_renderers))
@@ -448,13 +448,13 @@ if hasattr(os, "register_at_fork"):
 def _require_own_process() -> None:
     if _drawing_process not in (None, os.getpid()):
         raise RuntimeError(
-            "this process was forked from one that has drawn, and cannot draw: start it by the method 'spawn', as "
+            "this process was forked from one that has drawn, and cannot draw: start it with the method 'spawn', as "
             "AsyncVectorEnv does with context='spawn'"
         )
 
 
 def _mujoco() -> ModuleType:
-    """Import MuJoCo, with a way to draw chosen where the user has not."""
+    """Import MuJoCo, choosing a graphics library unless the user has."""
     is_linux = sys.platform.startswith("linux")
     if is_linux and "mujoco" not in sys.modules and "MUJOCO_GL" not in os.environ:
         for name, library in (("egl", "EGL"), ("osmesa", "OSMesa")):

@@ -4,18 +4,18 @@ A recording holds, on the timelines ``step`` and ``sim_time``:
 
 | entity | content |
 |---|---|
-| ``/ground`` | the ground, a solid slab whose upper side is a hair below the grid at y = 0 |
-| ``/animal/body`` | a solid capsule for each element, darker the more the ground carries, red where an object touches |
+| ``/ground`` | the ground, a solid slab whose upper side is slightly below the grid at y = 0 |
+| ``/animal/body`` | a solid capsule for each element, darker with ground load, red in contact with an object |
 | ``/animal/nodes`` | the nodes, inside the capsules |
-| ``/animal/head`` | a ball about the head, if it is a rod's end |
-| ``/animal/trail`` | where the head has been |
-| ``/animal/direction`` | an arrow over the head where to go, if the goal has a direction |
-| ``/animal/normal_force`` | the force that the ground carries, by element [N] |
+| ``/animal/head`` | a ball around the head, if it is a rod's end |
+| ``/animal/trail`` | the path of the head |
+| ``/animal/direction`` | an arrow over the head in the direction to go, if the goal has one |
+| ``/animal/normal_force`` | the normal force of the ground, by element [N] |
 | ``/animal/object_force`` | the normal force between objects and body, by element [N], if there are objects |
 | ``/objects`` | a solid cylinder for each object |
-| ``/home`` | a disc on the ground that the head has to come back to, if the task has a home |
+| ``/home`` | a disc on the ground to which the head has to return, if the task has a home |
 | ``/target`` | a sphere that the head has to enter, if the task has a target |
-| ``/reward/<term>``, ``/return`` | weighted reward of each term, and the sum of all so far |
+| ``/reward/<term>``, ``/return`` | weighted reward of each term, and the return so far |
 | ``/activations/<direction>/<arm>`` | activations of an arm's muscles |
 
 It is written a column at a time, and opens with the layout that `_blueprint` describes.
@@ -50,7 +50,7 @@ SCENE = (
     "animal/trail",
     "animal/direction",
 )
-"""Entities that the view of the scene shows"""
+"""Entities shown in the view of the scene"""
 
 GROUND = (226, 229, 225)
 GRID = (120, 130, 125, 90)
@@ -79,11 +79,11 @@ def record_rollout(env: Any, policy: Policy, path: str | Path, *, seed: int = 0,
     policy : callable
         ``policy(observations (B, d), env) -> actions (B, 42)``.
     path : str or Path
-        Where to write it; by custom it ends in ``.rrd``.
+        Path of the file, which by convention ends in ``.rrd``.
     seed : int
         Seed of the episode.
     **kwargs
-        Passed on to `run_rollout`: ``index`` and the environment's arguments.
+        Passed to `run_rollout`: ``index`` and the environment's arguments.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def record_rollout(env: Any, policy: Policy, path: str | Path, *, seed: int = 0,
 
 
 def write_recording(rollout: Rollout, path: str | Path) -> Path:
-    """Write a rollout as a recording, whole or not at all.
+    """Write a rollout as a recording, atomically.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def write_recording(rollout: Rollout, path: str | Path) -> Path:
 def write_stream(log: Callable[["rr.RecordingStream"], None], path: Path) -> Path:
     """Write what ``log`` sends to a stream as a recording, whole or not at all."""
     stream = import_rerun().RecordingStream(APPLICATION_ID)
-    # rerun's own file sink reports a full disk in the log only, so the bytes go through memory
+    # rerun's own file sink reports a full disk only in the log, so the bytes go through memory
     memory = stream.binary_stream()
     log(stream)
     data = memory.read()
@@ -140,19 +140,19 @@ def read_positions(path: str | Path) -> tuple[Array, Array]:
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it is not a whole recording of an animal.
+        If it is not a complete recording of an animal.
     """
     rr, path = import_rerun(), Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"no recording at {path}")
     try:
         with warnings.catch_warnings():
-            # of a file cut short, rerun also warns that it may be an old one
+            # for a truncated file, rerun also warns that it may be an old one
             warnings.simplefilter("ignore")
             stream = rr.chunk.RrdReader(path).stream()
         parts = stream.filter(content="/animal/nodes", components="Points3D:positions").to_chunks()
     except Exception as error:
-        raise ValueError(f"{path} is not a whole rerun recording: {error}") from error
+        raise ValueError(f"{path} is not a complete rerun recording: {error}") from error
     times, nodes = [], []
     for batch in (part.to_record_batch() for part in parts):
         column = batch.column("Points3D:positions")
@@ -165,7 +165,7 @@ def read_positions(path: str | Path) -> tuple[Array, Array]:
 
 
 def import_rerun() -> ModuleType:
-    """Return the module rerun, or raise ImportError that says how to get it."""
+    """Return the module rerun, or raise ImportError with installation instructions."""
     try:
         import rerun
     except ImportError as error:
@@ -174,7 +174,7 @@ def import_rerun() -> ModuleType:
 
 
 def write_whole(path: Path, data: bytes) -> Path:
-    """Write a recording atomically, so that an error leaves nothing half done."""
+    """Write a recording atomically, so that an error leaves no partial file."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(path, lambda part: part.write_bytes(data))
@@ -193,7 +193,7 @@ def send_columns(stream: "rr.RecordingStream", rollout: Rollout, entity: str, co
 
 
 def _view_box(rollout: Rollout) -> tuple[Array, float]:
-    """Return centre and width of what there is to see on the ground, (3,) and a length [m]."""
+    """Return centre and width of the scene, (3,) and a length [m]."""
     seen = [points.reshape(-1, 3) for points in (rollout.nodes, *rollout.objects())]
     seen += [place for place in (rollout.home, rollout.target) if place is not None]
     seen = [points for points in seen if points.size]
@@ -203,7 +203,7 @@ def _view_box(rollout: Rollout) -> tuple[Array, float]:
 
 
 def _log_scene(stream: "rr.RecordingStream", rollout: Rollout) -> None:
-    """Log what does not move: axes, ground, home and target."""
+    """Log the static scene: axes, ground, home and target."""
     rr = import_rerun()
     centre, width = _view_box(rollout)
     half, depth = 4.0 * width, 0.01 * rollout.body_length
@@ -261,7 +261,7 @@ def _log_animal(stream: "rr.RecordingStream", rollout: Rollout) -> None:
 
 
 def _log_head(stream: "rr.RecordingStream", rollout: Rollout) -> None:
-    """Log the head, its trail, and where it is to go."""
+    """Log the head, its trail, and the direction to go."""
     rr = import_rerun()
     thick, above = _thickness(rollout), 1.1 * rollout.head_radius.max()
     if rollout.head_is_an_end:
@@ -310,12 +310,12 @@ def _log_objects(stream: "rr.RecordingStream", rollout: Rollout) -> None:
 
 
 def _thickness(rollout: Rollout) -> float:
-    """Return the radius that most of the body has, the scale of lines and points [m]."""
+    """Return the typical radius of the body, the scale of lines and points [m]."""
     return float(np.median(rollout.radii))
 
 
 def _log_series(stream: "rr.RecordingStream", rollout: Rollout) -> None:
-    """Log what is plotted over time."""
+    """Log the time series."""
     rr = import_rerun()
 
     def log(entity: str, values: Array, names: list[str], **style: Any) -> None:
@@ -344,12 +344,12 @@ def activation_groups(rollout: Rollout) -> list[str]:
 
 
 def contact_colors(normal_force: Array, object_force: Array) -> Array:
-    """Return a colour for each element: pale where it hovers, dark under twice the mean load, red at objects.
+    """Return a colour for each element: pale without load, dark at twice the mean load, red in contact with objects.
 
     Parameters
     ----------
     normal_force : Array
-        Force with which the ground carries each element [N], (T, M).
+        Normal force of the ground on each element [N], (T, M).
     object_force : Array
         Normal force between each element and the objects [N], (T, M).
 
@@ -373,7 +373,7 @@ def rotations_from_z(vectors: Array) -> Array:
 
 
 def _blueprint(rollout: Rollout) -> Any:
-    """Describe the layout: the scene, and beside it rewards, return and activations, playing in real time."""
+    """Describe the layout: the scene, with rewards, return and activations beside it, playing in real time."""
     rr, rrb = import_rerun(), importlib.import_module("rerun.blueprint")
 
     from_start = rrb.VisibleTimeRange(

@@ -1,4 +1,4 @@
-"""Rollouts: what one environment did, step by step, as arrays."""
+"""Rollouts: the history of one environment, step by step, as arrays."""
 
 from collections import deque
 from collections.abc import Callable
@@ -13,14 +13,14 @@ from ..bodies.body import Body, Pose
 from ..engine.model import Array, Index, State
 
 HOME_RADIUS = 0.1
-"""Of the disc that marks home: how near to it the head counts as there [m]"""
+"""Radius of the disc that marks home: within it, the head counts as being there [m]"""
 
 Policy = Callable[[Array, Any], Array]
-"""Observations (B, d) and the batch in, actions (B, 42) out"""
+"""Maps observations (B, d) and the batch to actions (B, 42)"""
 
 
 class Batch(Protocol):
-    """What is drawn of a batch of environments; `elastica_gym.envs.BatchEnv` is one."""
+    """The attributes needed to draw a batch of environments, such as `elastica_gym.envs.BatchEnv`."""
 
     num_envs: int
     body: Body
@@ -33,14 +33,14 @@ class Batch(Protocol):
 
     @property
     def target(self) -> Array | None:
-        """Positions of the targets [m], (B, 3), if there is something to show."""
+        """Positions of the targets [m], (B, 3), or None."""
 
     @property
     def pose(self) -> Pose:
-        """Where the animals are."""
+        """The animals' current pose."""
 
     def situation(self) -> Any:
-        """Return where the environments stand."""
+        """Return the environments' current situation."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,11 +50,11 @@ class Rollout:
     Attributes
     ----------
     name : str
-        What it is a rollout of, such as the id of the environment.
+        Name of the rollout, such as the id of the environment.
     body_length : float
         Length of the animal at rest, the unit of the scene [m].
     elements_per_rod : tuple of int
-        Rods follow one another in `nodes`, `radii` and `normal_force`: n elements, n + 1 nodes.
+        Number of elements n of each rod; rods follow one another in `nodes` (n + 1 each), `radii` and `normal_force`.
     step : Array
         Control steps done, (T,) int64.
     sim_time : Array
@@ -64,9 +64,9 @@ class Rollout:
     radii : Array
         Radii of elements [m], (T, M).
     normal_force : Array
-        Force with which the ground carries each element [N], (T, M).
+        Normal force of the ground on each element [N], (T, M).
     head_node : int
-        Which of the nodes is the head.
+        Index of the head's node.
     object_centre : Array
         Centres of mass of the objects, which are cylinders [m], (T, C, 3).
     object_axis : Array
@@ -76,13 +76,13 @@ class Rollout:
     object_force : Array
         Normal force between each element and the objects [N], (T, M).
     direction : Array or None
-        Horizontal unit vector in which the task has the animal go, (T, 3), where its goal has a direction.
+        Horizontal unit vector in which the animal has to go, (T, 3), if its goal has a direction.
     target : Array or None
-        Position of the target [m], (T, 3), where the task has one.
+        Position of the target [m], (T, 3), if the task has one.
     target_radius : float
         Radius of the ball that marks it [m].
     home : Array or None
-        Place on the ground to which the animal has to come back [m], (T, 3), where the task has one.
+        Place on the ground to which the animal has to return [m], (T, 3), if the task has one.
     rewards : dict of str to Array
         Weighted reward of each term, zero at the start, (T,) each.
     activations : Array
@@ -125,7 +125,7 @@ class Rollout:
 
     @property
     def head_is_an_end(self) -> bool:
-        """Whether the head is a rod's end, which looks like any other, rather than a part between two ends."""
+        """Whether the head is a rod's end, which looks like any other end, rather than a part in between."""
         ends = np.cumsum([n + 1 for n in self.elements_per_rod])
         return self.head_node + 1 in ends or self.head_node in (0, *ends)
 
@@ -140,12 +140,12 @@ class Rollout:
         return float(self.sim_time[-1] - self.sim_time[0])
 
     def segments(self) -> tuple[Array, Array]:
-        """Return where each element begins and ends [m], two of (T, M, 3)."""
+        """Return the beginning and end of each element [m], two of (T, M, 3)."""
         first = first_nodes(self.elements_per_rod)
         return self.nodes[:, first], self.nodes[:, first + 1]
 
     def objects(self) -> tuple[Array, Array]:
-        """Return the centres of the first and of the second end of each object [m], two of (T, C, 3)."""
+        """Return the centres of the first and second ends of each object [m], two of (T, C, 3)."""
         half = 0.5 * self.object_length[:, None] * self.object_axis
         return self.object_centre - half, self.object_centre + half
 
@@ -157,25 +157,24 @@ def first_nodes(elements_per_rod: tuple[int, ...]) -> Index:
 
 
 def element_at(node: int, elements_per_rod: tuple[int, ...]) -> int:
-    """Return the element that begins at a node, or for a rod's last node the one that ends there."""
+    """Return the element that begins at a node, or at a rod's last node, the one that ends there."""
     return max(int(np.searchsorted(first_nodes(elements_per_rod), node, side="right")) - 1, 0)
 
 
 class Recorder:
-    """Collects the rollout of one environment of a batch, a moment at a time.
+    """Collects the rollout of one environment of a batch, one moment at a time.
 
-    Call `capture` after ``reset`` and after every ``step``, up to the end of the episode. A moment
-    whose numbers are not finite, as a simulation that diverged may leave behind, repeats the
-    positions of the moment before.
+    Call `capture` after ``reset`` and after every ``step``, up to the end of the episode. If numbers
+    are not finite, as after a divergence, the previous moment's positions are repeated.
 
     Parameters
     ----------
     env : Batch
-        The environment, which may also be wrapped.
+        The environment, possibly wrapped.
     index : int
-        Which environment of the batch to follow.
+        Index of the environment in the batch.
     keep : int, optional
-        How many of the last moments to keep; all if omitted.
+        Number of latest moments to keep; all if omitted.
     """
 
     def __init__(self, env: Any, index: int = 0, *, keep: int | None = None) -> None:
@@ -193,18 +192,18 @@ class Recorder:
         self._rewards: deque[dict[str, float]] = deque(maxlen=keep)
 
     def capture(self, infos: dict[str, Any] | None = None) -> Self:
-        """Append the environment's present moment.
+        """Append the environment's current moment.
 
         Parameters
         ----------
         infos : dict, optional
-            What ``step`` returned; its ``reward_<term>`` arrays are the rewards. Omit it after ``reset``.
+            The info from ``step``; its ``reward_<term>`` arrays are the rewards. Omit it after ``reset``.
         """
         env, i, state = self.env, self._index, self.env.state
         lengths = np.linalg.norm(np.diff(state.x[i], axis=1), axis=0)[self._elements]
         moment = {
             "nodes": state.x[i].T[self._nodes],
-            # at constant volume, of where the nodes are now: State.radius is of half a time step before
+            # at constant volume, from the current nodes: State.radius lags by half a time step
             "radii": self._root_section / np.sqrt(lengths),
             "normal_force": state.normal_force[i, self._elements],
             "object_centre": state.body_x[i].copy(),
@@ -224,12 +223,12 @@ class Recorder:
         return self
 
     def rollout(self) -> Rollout:
-        """Return what has been captured.
+        """Return the captured rollout.
 
         Raises
         ------
         RuntimeError
-            If nothing was.
+            If nothing was captured.
         """
         if not self._moments:
             raise RuntimeError("nothing was captured: call capture() after reset() and after every step()")
@@ -263,17 +262,17 @@ def run_rollout(env: Any, policy: Policy, *, seed: int = 0, index: int = 0, **en
     Parameters
     ----------
     env : str or Batch
-        Id of a registered environment, of which a batch of one is made, or a batch to use. A batch
-        must not reset at the step that ends an episode (``AutoresetMode.SAME_STEP``), since its last
-        moment would be lost.
+        Id of a registered environment, for a batch of one, or an existing batch. A batch must not
+        reset in the step that ends an episode (``AutoresetMode.SAME_STEP``), since the last moment
+        would be lost.
     policy : callable
         ``policy(observations (B, d), env) -> actions (B, 42)``.
     seed : int
         Seed of the episode.
     index : int
-        Which environment of the batch to follow.
+        Index of the environment in the batch.
     **env_kwargs
-        Passed on to ``gymnasium.make_vec`` with an id.
+        Passed to ``gymnasium.make_vec`` with an id.
     """
     if isinstance(env, str):
         env_kwargs = {"autoreset_mode": AutoresetMode.DISABLED, "num_envs": 1, **env_kwargs}
@@ -297,7 +296,7 @@ def run_rollout(env: Any, policy: Policy, *, seed: int = 0, index: int = 0, **en
 
 
 def _direction(env: Batch, i: int) -> Array:
-    """Return the direction of the goal that the animal observes, in the lab, (3,), or (0,) if it observes none."""
+    """Return the observed direction of the goal, in the lab, (3,), or (0,) if there is none."""
     layout = env.task.goal_layout
     if not {"goal/forward", "goal/right"} <= set(layout.names):
         return np.zeros(0)
@@ -308,7 +307,7 @@ def _direction(env: Batch, i: int) -> Array:
 
 
 def _home(env: Batch, i: int) -> Array:
-    """Return where the animal has to come back to, on the ground, (3,), or (0,) if its task has no such place."""
+    """Return the place to which the animal has to return, on the ground, (3,), or (0,) if there is none."""
     if "home" not in env.task.goal_layout:
         return np.zeros(0)
     goal = env.situation().goal
@@ -316,6 +315,6 @@ def _home(env: Batch, i: int) -> Array:
 
 
 def _batch(env: Any) -> Any:
-    """Return the batch inside wrappers or inside the view of a batch of one."""
+    """Return the batch inside wrappers or inside a single environment."""
     inner = getattr(env, "unwrapped", env)
     return getattr(inner, "batch", inner)

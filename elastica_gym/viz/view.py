@@ -1,4 +1,4 @@
-"""Environments as they are now, in pictures: what their ``render`` returns."""
+"""Pictures of environments' current states, as their ``render`` returns them."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from .rollout import Batch, Recorder
 
 
 class View:
-    """Draws the environments of a batch as they are now, each seen by a camera that follows its animal.
+    """Draws the current states of a batch's environments, each with a camera that follows its animal.
 
-    One whose numbers are not finite, as a simulation that diverged may leave behind, is drawn as it was drawn last, or
-    if it never was, as bare ground. Nothing of the batch is changed.
+    If numbers are not finite, as after a divergence, the last picture is drawn again, or bare ground if there is none.
+    The batch is not changed.
 
     Parameters
     ----------
@@ -35,5 +35,5 @@ class View:
         return self._stage.draw(figures(rollout, 0), following(rollout, 0, self._aspect))
 
     def close(self) -> None:
-        """Free what the renderer holds."""
+        """Free the renderer."""
         self._stage.close()

@@ -114,7 +114,7 @@ def test_video(drawn, tmp_path):
 
 def test_bad_arguments(forward):
     for moments in ([], [41], [-1]):
-        with pytest.raises(ValueError, match="moments must be some from 0 to 40, not"):
+        with pytest.raises(ValueError, match="moments must be indices from 0 to 40, not"):
             render_frames(forward, moments)
     with pytest.raises(ValueError, match="width must be positive, not 0"):
         Stage(width=0)

@@ -191,7 +191,7 @@ def test_reading_what_is_no_recording(recording, tmp_path):
         read_positions(tmp_path / "none.rrd")
     cut = tmp_path / "cut.rrd"
     cut.write_bytes(recording.read_bytes()[:20_000])
-    with pytest.raises(ValueError, match="not a whole rerun recording"):
+    with pytest.raises(ValueError, match="not a complete rerun recording"):
         read_positions(cut)
     other = tmp_path / "other.rrd"
     with rr.RecordingStream("other") as stream:
