@@ -1,23 +1,108 @@
-"""Write the page of every environment: ``python scripts/document_environments.py`` writes docs/environments/."""
+"""Write the page of every environment, and their index: ``python scripts/document_environments.py``.
+
+A page has the specification from the declaration of the task, and the results from the cards of shipped policies.
+"""
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from elastica_gym.console.bad_input import make_folder, run_command
 from elastica_gym.envs import GOAL_IDS, IDS, document, task_of
+from elastica_gym.rl import cards
 
-PAGES = Path(__file__).parents[1] / "docs" / "environments"
+DOCS = Path(__file__).parents[1] / "docs"
+INDEX = "index"
+HINDSIGHT = "hindsight experience replay, see `elastica_gym.envs.goal`"
 
 
 def main() -> None:
     """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=PAGES, help="folder of the pages (default: %(default)s)")
+    parser.add_argument("--out", type=Path, default=DOCS / "environments", help="folder (default: %(default)s)")
     folder = make_folder(parser.parse_args().out)
-    for env_id in (*IDS, *GOAL_IDS):
+    for name, text in pages().items():
+        (folder / f"{name}.md").write_text(text)
+    print(f"wrote {len(pages())} pages into {folder}")
+
+
+def pages() -> dict[str, str]:
+    """Return the text of every page by its name."""
+    ids = (*IDS, *GOAL_IDS)
+    return {INDEX: index(ids), **{task_of(env_id).name: page(env_id) for env_id in ids}}
+
+
+def page(env_id: str) -> str:
+    """Return the page of an environment."""
+    title, _, text = document(task_of(env_id)).partition("\n\n")
+    summary, _, rest = text.partition("\n\n")
+    return "\n\n".join([title, f"`{env_id}`: {summary}", _animation(env_id), *_results(env_id), rest])
+
+
+def index(ids: tuple[str, ...]) -> str:
+    """Return the page with the table of all environments."""
+    rows = ["| environment | task | observation | action | shipped policy | score | minutes |", "|" + "---|" * 7]
+    for env_id in ids:
         task = task_of(env_id)
-        (folder / f"{task.name}.md").write_text(document(task))
-    print(f"wrote {len(IDS) + len(GOAL_IDS)} pages into {folder}")
+        body = task.make_body()
+        summary = document(task).split("\n\n")[1].removesuffix(".")
+        found = _cards(env_id)
+        card = found[0] if found else None
+        name = f"[{task.name}]({task.name}.md)"
+        sizes = f"{len(task.layout(body).names)} | {body.n_activations}"
+        score = f"`{card['name']}` | {best_score(card)} | {card['wall_time_minutes']:.0f}" if card else " | | "
+        rows.append(f"| {name} | {summary[:1].lower()}{summary[1:]} | {sizes} | {score} |")
+    tree = ["```{toctree}", ":hidden:", "", *(task_of(env_id).name for env_id in ids), "```"]
+    text = (
+        "Scores are means over 100 unseen episodes; minutes are those that the shipped policy was trained for, on the "
+        "machine that its card names, without those of a policy that it started from."
+    )
+    return "\n\n".join(["# Environments", text, "\n".join(rows), "\n".join(tree)]) + "\n"
+
+
+def best_score(card: dict[str, Any]) -> str:
+    """Return the number by which policies of a task are compared: the distance of crawls, else the success rate."""
+    score = card["score"]
+    if card["environment"].partition("/")[2].startswith(("SnakeForward", "OctopusCrawl")):
+        return f"{score['distance_mean']:.2f} m"
+    return f"{score['success_rate']:.0%}"
+
+
+def _cards(env_id: str) -> list[dict[str, Any]]:
+    found = [cards.read_card(name) for name in cards.names()]
+    return [card for card in found if card["environment"] == env_id]
+
+
+def _animation(env_id: str) -> str:
+    name = task_of(env_id).name
+    return f"![An episode of {name}](../images/{name}.gif)"
+
+
+def _results(env_id: str) -> list[str]:
+    """Return the scores of shipped policies, how they were trained, and the learning curve."""
+    found = _cards(env_id)
+    if not found:
+        return ["## Results", f"No policy ships for this environment; it is made for {HINDSIGHT}."]
+    rows = ["| policy | success | return | distance [m] | steps | minutes |", "|" + "---|" * 6]
+    for card in found:
+        score = card["score"]
+        low, high = score["success_interval95"]
+        rows.append(
+            f"| `{card['name']}` | {score['success_rate']:.0%} ({low:.0%} to {high:.0%}) "
+            f"| {score['return_mean']:.1f} ± {score['return_ci95']:.1f} "
+            f"| {score['distance_mean']:.2f} ± {score['distance_ci95']:.2f} "
+            f"| {card['steps']:,} | {card['wall_time_minutes']:.0f} |"
+        )
+    parts = [
+        "## Results",
+        "On 100 unseen episodes, with 95 % intervals over episodes:",
+        "\n".join(rows),
+        "```bash\n" + "\n".join(card["command"] for card in found) + "\n```",
+    ]
+    name = task_of(env_id).name
+    if (DOCS / "images" / f"learning_{name}.png").exists():
+        parts.append(f"![Learning curve of {name}](../images/learning_{name}.png)")
+    return parts
 
 
 if __name__ == "__main__":

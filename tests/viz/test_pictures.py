@@ -33,14 +33,14 @@ def test_animals(tmp_path):
     assert image.open(path).size == (320, 250)
 
 
-def test_film_of_a_pretrained_policy(tmp_path):
+def test_animation_of_an_environment(tmp_path):
     image = pytest.importorskip("PIL.Image")
-    path = tmp_path / "film.gif"
-    done = run("make_film.py", "--name", "octopus_move_ppo", "--size", 120, 80, "--every", 4, "--output", path)
+    small = ("--env", "elastica_gym/OctopusMove-v1", "--size", 120, 80, "--every", 4)
+    done = run("make_animations.py", *small, "--out", tmp_path / "new")
     if "pictures need MuJoCo" in done.stderr or "cannot draw offscreen" in done.stderr:
         pytest.skip(done.stderr)
     assert done.returncode == 0, done.stderr
-    film = image.open(path)
+    film = image.open(tmp_path / "new" / "OctopusMove.gif")
     assert film.size == (120, 80)
     assert film.n_frames > 2
     assert film.info["duration"] == 200
