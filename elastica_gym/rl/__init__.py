@@ -1,6 +1,6 @@
-"""The Stable-Baselines3 side: the adapter, training, imitation, policies, their evaluation and their cards.
+"""Stable-Baselines3: adapter, training, imitation, policies, evaluation and cards.
 
-`BatchVecEnv` adapts a batch to Stable-Baselines3; `make_batch_vec_env` makes one by its id.
+`BatchVecEnv` adapts a batch to Stable-Baselines3; `make_batch_vec_env` makes one from an environment id.
 """
 
 from typing import Any
@@ -9,7 +9,7 @@ __all__ = ["BatchVecEnv", "make_batch_vec_env"]
 
 
 def __getattr__(name: str) -> Any:
-    # Stable-Baselines3 takes seconds to import, and not all of this room needs it
+    # lazy: Stable-Baselines3 takes seconds to import
     if name in __all__:
         from . import vec_env
 

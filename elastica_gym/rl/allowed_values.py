@@ -1,4 +1,4 @@
-"""Which values hyperparameters may have, checked before Stable-Baselines3, NumPy or torch get them."""
+"""Allowed values of hyperparameters, checked before they reach Stable-Baselines3, NumPy or torch."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -7,25 +7,25 @@ from typing import Any, NamedTuple
 from ..console.bad_input import BadInputError, choose
 
 MOST = 1_000_000_000
-"""Largest whole number that a hyperparameter may be"""
+"""Largest integer allowed"""
 
 
 class Allowed(NamedTuple):
-    """What a value must be."""
+    """The allowed values of a hyperparameter."""
 
     text: str
-    """To be put after "must be" """
+    """Completes "must be ..." in error messages"""
     read: Callable[[Any], Any]
-    """Returns the value as the algorithm takes it, or raises ValueError or TypeError if it is not allowed"""
+    """Converts a value for the algorithm; raises ValueError or TypeError if it is not allowed"""
 
 
 def read_value(name: str, value: Any, allowed: Allowed) -> Any:
-    """Return a value as the algorithm takes it.
+    """Convert a value for the algorithm.
 
     Raises
     ------
     BadInputError
-        If it is not allowed; the message names it, its value, and what is allowed.
+        If the value is not allowed; the message gives the name, the value, and the allowed values.
     """
     try:
         return allowed.read(value)
@@ -34,19 +34,19 @@ def read_value(name: str, value: Any, allowed: Allowed) -> Any:
 
 
 def read_mapping(name: str, values: Mapping[Any, Any], allowed: Mapping[str, Allowed]) -> None:
-    """Check the names and values of a hyperparameter that is itself a mapping.
+    """Check the keys and values of a hyperparameter that is itself a mapping.
 
     Raises
     ------
     BadInputError
-        If a name is unknown or a value is not allowed.
+        If a key is unknown or a value is not allowed.
     """
     for key, value in values.items():
         read_value(f"{key} of {name}", value, allowed[choose(f"key of {name}", str(key), allowed)])
 
 
 def _as_number(value: Any) -> int | float:
-    # YAML reads 1e-3 as a text; a truth value is a number to Python
+    # YAML reads 1e-3 as a string; to Python, a bool is a number
     number = float(value) if isinstance(value, str) else value
     if isinstance(number, bool) or not isinstance(number, (int, float)):
         raise TypeError
@@ -56,7 +56,7 @@ def _as_number(value: Any) -> int | float:
 
 
 def number(text: str, holds: Callable[[float], bool]) -> Allowed:
-    """Return what a number must be for which `holds` is true."""
+    """Allow numbers for which `holds` is true."""
 
     def read(value: Any) -> int | float:
         number = _as_number(value)
@@ -68,7 +68,7 @@ def number(text: str, holds: Callable[[float], bool]) -> Allowed:
 
 
 def whole(lowest: int, *, highest: int = MOST) -> Allowed:
-    """Return what a whole number from `lowest` to `highest` must be."""
+    """Allow integers from `lowest` to `highest`."""
 
     def read(value: Any) -> int:
         number = _as_number(value)
@@ -80,7 +80,7 @@ def whole(lowest: int, *, highest: int = MOST) -> Allowed:
 
 
 def either(*choices: Allowed) -> Allowed:
-    """Return what a value must be that one of several choices allows."""
+    """Allow what any of several choices allows."""
 
     def read(value: Any) -> Any:
         for choice in choices:
@@ -94,7 +94,7 @@ def either(*choices: Allowed) -> Allowed:
 
 
 def constant(*values: Any) -> Allowed:
-    """Return what a value must be that is one of a few."""
+    """Allow a few given values."""
 
     def read(value: Any) -> Any:
         if not any(value is one or (isinstance(one, str) and value == one) for one in values):
@@ -105,7 +105,7 @@ def constant(*values: Any) -> Allowed:
 
 
 def prefixed(prefix: str, allowed: Allowed) -> Allowed:
-    """Return what a text must be that has a number after a prefix, such as ``lin_0.001``."""
+    """Allow a string of a prefix and a number, such as ``lin_0.001``."""
 
     def read(value: Any) -> str:
         if not isinstance(value, str) or not value.startswith(prefix):
@@ -117,7 +117,7 @@ def prefixed(prefix: str, allowed: Allowed) -> Allowed:
 
 
 def instance(text: str, *kinds: type) -> Allowed:
-    """Return what a value must be that is of one of several types."""
+    """Allow instances of several types."""
 
     def read(value: Any) -> Any:
         if not isinstance(value, kinds):
@@ -128,7 +128,7 @@ def instance(text: str, *kinds: type) -> Allowed:
 
 
 def subclass(text: str, base: type) -> Allowed:
-    """Return what a class must be that derives from another."""
+    """Allow subclasses of `base`."""
 
     def read(value: Any) -> Any:
         if not (isinstance(value, type) and issubclass(value, base)):
@@ -139,7 +139,7 @@ def subclass(text: str, base: type) -> Allowed:
 
 
 def list_of(text: str, item: Allowed) -> Allowed:
-    """Return what a list must be whose items are all allowed."""
+    """Allow lists of allowed items."""
 
     def read(value: Any) -> Any:
         if not isinstance(value, (list, tuple)):
@@ -152,7 +152,7 @@ def list_of(text: str, item: Allowed) -> Allowed:
 
 
 def layers(heads: Sequence[str], *, all_needed: bool) -> Allowed:
-    """Return what the sizes of layers must be: those of all networks, or of each by its name."""
+    """Allow layer sizes, either one list for all networks or one for each network by name."""
     sizes = list_of("", whole(1, highest=100_000))
 
     def read(value: Any) -> Any:
@@ -174,7 +174,7 @@ POSITIVE = number("a number above 0", lambda x: x > 0.0)
 NOT_NEGATIVE = number("a number, 0 or more", lambda x: x >= 0.0)
 ANY_NUMBER = number("a finite number", lambda x: True)
 MAPPING = either(instance("a mapping such as {key: value}", dict), NONE)
-"""Of what is written as a text, the text is read first"""
+"""A mapping written as a string is parsed first"""
 
 
 def _train_freq(value: Any) -> Any:
@@ -230,7 +230,7 @@ ALLOWED: dict[str, dict[str, Allowed]] = {
         "replay_buffer_kwargs": MAPPING,
     },
 }
-"""Of each algorithm, what each key of its configuration must be"""
+"""Allowed values of each configuration key, by algorithm"""
 
 NORMALIZE: dict[str, Allowed] = {
     "norm_obs": TRUTH,
@@ -243,7 +243,7 @@ NORMALIZE: dict[str, Allowed] = {
 
 
 def policy_allowed(algo: str, known: set[str]) -> dict[str, Allowed]:
-    """Return what the values of ``policy_kwargs`` must be, for the arguments that are known to the policy."""
+    """Return the allowed values of ``policy_kwargs``, for the arguments `known` to the policy."""
     from torch import nn
 
     anything = Allowed("anything", lambda value: value)

@@ -1,7 +1,7 @@
-"""Pretrained policies: each a model, the statistics of its observations, and a card that says where it comes from.
+"""Pretrained policies: each is a model, its observation statistics, and a card with its provenance.
 
-A policy NAME is NAME.zip, a Stable-Baselines3 model without what only training needs; NAME.npz, the normalisation of
-its observations, if it has one; and NAME.yml, its card. All are in ``agents/pretrained``.
+A policy NAME consists of NAME.zip, a Stable-Baselines3 model without its training state; NAME.npz, its observation
+normalisation, if any; and NAME.yml, its card. All are in ``agents/pretrained``.
 """
 
 import shlex
@@ -18,9 +18,9 @@ from .policies import Statistics, TrainedPolicy, load_model
 
 PRETRAINED = shipped("pretrained")
 LARGEST = 5_000_000
-"""Bytes that all pretrained policies may take"""
+"""Maximum size of all pretrained policies together [bytes]"""
 ONLY_FOR_TRAINING = ("_last_obs", "_last_original_obs", "_last_episode_starts", "ep_info_buffer", "ep_success_buffer")
-"""Attributes of a model that only the rest of a training would need"""
+"""Attributes of a model that are only needed to continue training"""
 
 
 def names(folder: Path = PRETRAINED) -> list[str]:
@@ -36,8 +36,8 @@ def load_pretrained(name: str, folder: Path = PRETRAINED) -> tuple[TrainedPolicy
     policy
         The model with its normalisation.
     card
-        ``environment``, ``algorithm``, ``seed``, ``command``, ``hyperparameters``, ``score``, what its ``intervals``
-        cover, the machines that it was ``scored_on`` and ``trained_on``, and more.
+        ``environment``, ``algorithm``, ``seed``, ``command``, ``hyperparameters``, ``score``, the meaning of its
+        ``intervals``, the machines it was ``scored_on`` and ``trained_on``, and more.
     """
     card = read_card(name, folder)
     model = load_model(folder / f"{name}.zip", card["algorithm"])
@@ -45,7 +45,7 @@ def load_pretrained(name: str, folder: Path = PRETRAINED) -> tuple[TrainedPolicy
 
 
 def read_card(name: str, folder: Path = PRETRAINED) -> dict[str, Any]:
-    """Return what the card of a pretrained policy says."""
+    """Return the card of a pretrained policy."""
     return yaml.safe_load((folder / f"{choose('pretrained policy', name, names(folder))}.yml").read_text())
 
 
@@ -56,17 +56,17 @@ def read_statistics(path: Path) -> Statistics | None:
     try:
         with np.load(path, allow_pickle=False) as saved:
             return Statistics(saved["mean"], saved["variance"], float(saved["epsilon"]), float(saved["clip"]))
-    except Exception as error:  # a damaged archive fails in as many ways as there are bytes in it
+    except Exception as error:  # a damaged archive can raise almost anything
         raise BadInputError(f"The statistics {path} are damaged: {type(error).__name__}: {error}") from error
 
 
 def write_pretrained(folder: Path, name: str, policy: TrainedPolicy, card: dict[str, Any]) -> list[Path]:
-    """Write a policy and its card, the card last, and return the files.
+    """Write a policy and then its card, and return the files.
 
     Raises
     ------
     BadInputError
-        If the folder would become larger than `LARGEST`; then it is as it was.
+        If the folder would become larger than `LARGEST`; it is then left unchanged.
     """
     model, paths = policy.model, [folder / f"{name}{suffix}" for suffix in (".zip", ".npz", ".yml")]
     for optimizer in _optimizers(model):
@@ -88,7 +88,7 @@ def write_pretrained(folder: Path, name: str, policy: TrainedPolicy, card: dict[
 
 
 def write_card(folder: Path, name: str, card: dict[str, Any]) -> Path:
-    """Write the card of a policy, and return its file."""
+    """Write the card of a policy and return its path."""
     text, path = yaml.safe_dump(card, sort_keys=False, width=120), folder / f"{name}.yml"
     write_atomically(path, lambda path: path.write_text(text))
     return path
@@ -118,7 +118,7 @@ def _write_statistics(path: Path, normalization: Any) -> None:
 
 
 def command_of(config: dict[str, Any]) -> str:
-    """Return the command that makes a run like the one with this ``config.yml``."""
+    """Return the command that reproduces a run with this ``config.yml``."""
     values = config["hyperparameters"]
     file = config.get("config")
     shipped = load(config["algo"], config["env"], config=file and Path(file))
@@ -132,7 +132,7 @@ def command_of(config: dict[str, Any]) -> str:
         words += ["--config", file]
     if config.get("start_from") is not None:
         start = config["start_from"]
-        # the folder that a run was in is of no use elsewhere: the id and the name of that run are
+        # keep only the id and the name of the run: its folder differs between machines
         words += ["--start-from", start if start in names() else str(Path("runs", *Path(start).parts[-2:]))]
     if config.get("imitate"):
         words += ["--imitate", str(config["imitate"])]

@@ -1,7 +1,7 @@
-"""Checkpoints that survive being killed: whole or not at all, and checked before use.
+"""Checkpoints that survive a killed process: written atomically and verified before use.
 
-A checkpoint is a folder ``<steps>`` with files and ``checksums.json``. It is written under another name, forced to
-disk and renamed, so that a process that dies in between leaves the previous one as it was.
+A checkpoint is a folder ``<steps>`` with files and ``checksums.json``. It is written under a temporary name, synced to
+disk and renamed, so that a process that dies in between leaves the previous checkpoint intact.
 """
 
 import hashlib
@@ -15,25 +15,25 @@ from ..files import force_to_disk
 
 CHECKSUMS = "checksums.json"
 KEPT = 2
-"""How many checkpoints are kept: one more than needed, for the day that the disk damages the last."""
+"""Checkpoints to keep: one more than needed, in case the last is damaged."""
 
 
 def write_checkpoint(checkpoints: Path, steps: int, write_files: Callable[[Path], object]) -> Path:
-    """Write a checkpoint and delete all but the last ones.
+    """Write a checkpoint and delete old ones.
 
     Parameters
     ----------
     checkpoints
-        Folder of the checkpoints; it is created.
+        Folder of the checkpoints; created if missing.
     steps
-        Environment steps done, which name the checkpoint.
+        Environment steps so far; they name the checkpoint.
     write_files
-        Is called with a folder and writes the checkpoint's files there.
+        Called with a folder; writes the checkpoint's files there.
 
     Raises
     ------
     OSError
-        If the disk does not take it; earlier checkpoints are then as they were.
+        If writing fails; earlier checkpoints are then left unchanged.
     """
     checkpoints.mkdir(parents=True, exist_ok=True)
     final, temporary = checkpoints / f"{steps:012d}", checkpoints / f".writing-{os.getpid()}"
@@ -59,12 +59,12 @@ def write_checkpoint(checkpoints: Path, steps: int, write_files: Callable[[Path]
 
 
 def checkpoint_folders(checkpoints: Path) -> list[Path]:
-    """Return the checkpoints, whole or not, oldest first."""
+    """Return all checkpoints, including damaged ones, oldest first."""
     return sorted(path for path in checkpoints.glob("[0-9]*") if path.is_dir())
 
 
 def last_whole_checkpoint(checkpoints: Path, *, tell: Callable[[str], None] = print) -> Path | None:
-    """Return the newest checkpoint whose files have their checksums, telling which newer ones are damaged."""
+    """Return the newest checkpoint with valid checksums; report newer, damaged ones through `tell`."""
     for folder in reversed(checkpoint_folders(checkpoints)):
         damage = find_damage(folder)
         if damage is None:
@@ -74,7 +74,7 @@ def last_whole_checkpoint(checkpoints: Path, *, tell: Callable[[str], None] = pr
 
 
 def find_damage(folder: Path) -> str | None:
-    """Return what is wrong with a checkpoint, or None."""
+    """Return how a checkpoint is damaged, or None if it is intact."""
     try:
         sums = json.loads((folder / CHECKSUMS).read_text())
         for name, checksum in sums.items():

@@ -1,4 +1,4 @@
-"""The search loop: CMA-ES over the parameters of a gait, one generation a batch."""
+"""The search loop: CMA-ES over the parameters of a gait, one generation per batch."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -27,8 +27,8 @@ GENERATIONS_BETWEEN_TRIALS = 10
 def strategy_about(
     start: np.ndarray, spread: np.ndarray, population: int, seed: int, bounds: Any = (None, None)
 ) -> cma.CMAEvolutionStrategy:
-    """Return CMA-ES whose first generation has a mean, a standard deviation for each number, and a size."""
-    # a seed of zero would stand for the clock
+    """Return CMA-ES with a mean, standard deviations and a population size for its first generation."""
+    # a seed of zero would mean the clock
     options = {"popsize": population, "CMA_stds": spread, "bounds": list(bounds), "seed": 1 + seed, "verbose": -9}
     return cma.CMAEvolutionStrategy(start, 1.0, options)
 
@@ -36,7 +36,7 @@ def strategy_about(
 def generations(
     strategy: cma.CMAEvolutionStrategy, worth: Callable[[np.ndarray], np.ndarray]
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield the candidates of one generation after the other, and what each is worth, of which more is better."""
+    """Yield the candidates of each generation and their values; larger is better."""
     while True:
         candidates = np.array(strategy.ask())
         values = worth(candidates)
@@ -45,17 +45,17 @@ def generations(
 
 
 class Search:
-    """A search of the gait with the largest objective.
+    """Search for the gait with the largest objective.
 
-    The distribution of candidates is that of CMA-ES (Hansen, The CMA evolution strategy: a tutorial, 2016). Candidates
-    of a generation have the same starts, and each generation has new ones. From time to time the centre of the
-    distribution and the best of the last generation are tried on the evaluation's episodes, and what did best there is
-    kept.
+    Candidates are drawn by CMA-ES (Hansen, The CMA evolution strategy: a tutorial, 2016). All candidates of a
+    generation share the same initial states, and each generation draws new ones. Every few generations the mean of the
+    distribution and the best candidate of the last generation are evaluated on the evaluation episodes, and the best
+    gait so far is saved.
 
     Parameters
     ----------
     folder
-        Where its files go, which exists.
+        Existing folder for the output files.
     config
         The arguments of ``python -m agents.search``.
     """
@@ -79,7 +79,7 @@ class Search:
             raise BadInputError(f"The environment refuses its arguments: {error}") from error
 
     def run(self) -> None:
-        """Search until the budget is spent, and write the plot, also when interrupted."""
+        """Search until the budget is spent, and write the plot, even if interrupted."""
         self._table = Table(self.folder / SEARCH)
         with Bar("searching", file=sys.stdout) as self._display:
             self._compile()
@@ -95,7 +95,7 @@ class Search:
                 write_atomically(self.folder / "search.png", lambda path: curves.save(figure, path))
 
     def _compile(self) -> None:
-        """Step one environment, so that compiling does not count."""
+        """Step one environment, so that compilation does not count."""
         env = self._environments(1)
         env.reset()
         env.step(np.zeros((1, *env.action_space.shape), np.float32))  # type: ignore[misc]
@@ -105,22 +105,22 @@ class Search:
         return self.budget.fraction(self.evaluations)
 
     def _descend(self, number: int) -> None:
-        """Begin anew and go on until this beginning's part of the budget is spent, or CMA-ES sees no way on."""
+        """Run one restart until its share of the budget is spent or CMA-ES stops."""
         end = min(1.0, (number + 1) / (self.config["restarts"] + 1))
         strategy = self._strategy(number)
-        # one generation at least, so that the shortest search finds something
+        # at least one generation, so that the shortest search finds something
         for generation, (candidates, values) in enumerate(generations(strategy, self._worth), 1):
             self.evaluations += len(candidates)
             goes_on = self._spent() < end and not strategy.stop()
             if generation % GENERATIONS_BETWEEN_TRIALS == 0 or not goes_on:
                 self._try(number, strategy.result.xfavorite, candidates[values.argmax()])
-            # after the trial, or what the last one finds would be in no row
+            # after the trial, so that the last row includes its result
             self._note(number, generation, values, strategy.sigma)
             if not goes_on:
                 break
 
     def _strategy(self, number: int) -> cma.CMAEvolutionStrategy:
-        """Return CMA-ES about the published gait, or later about one drawn at random."""
+        """Return CMA-ES centred on the published gait, or on a random gait for later restarts."""
         parameters = self.gait.parameters
         start, spread, low, high = (
             np.array([getattr(p, name) for p in parameters]) for name in ("start", "spread", "low", "high")
@@ -136,22 +136,22 @@ class Search:
         return seeds
 
     def _worth(self, candidates: np.ndarray) -> np.ndarray:
-        """Return the mean objective of each candidate, all from the same new starts."""
+        """Return the mean objective of each candidate over the same new initial states."""
         return self._values(self._batch, candidates, self._draw_starts())[0]
 
     def _values(self, env: BatchVecEnv, candidates: np.ndarray, seeds: list[int]) -> tuple[np.ndarray, Evaluation]:
-        """Return the mean objective of each candidate over the starts with these seeds, and all the episodes."""
+        """Return the mean objective of each candidate over these seeds, and the evaluation of all episodes."""
         result = run_episodes(GaitPolicy(self.gait, candidates), env, seeds * len(candidates))
         return self._objective(result).reshape(len(candidates), -1).mean(axis=1), result
 
     def _objective(self, result: Evaluation) -> np.ndarray:
         if self.gait.objective == "return":
             return result.returns
-        # what breaks the simulation has gone nowhere
+        # a diverged episode counts as no distance
         return np.where(result.reasons == "diverged", 0.0, result.distances)
 
     def _try(self, number: int, *candidates: np.ndarray) -> None:
-        """Evaluate two candidates on the evaluation's episodes, and keep the better one if it is the best so far."""
+        """Evaluate candidates on the evaluation episodes; save the best if it is the best so far."""
         episodes, first = self.config["evaluation_episodes"], self.config["evaluation_seed"]
         values, result = self._values(self._trials, np.array(candidates), list(range(first, first + episodes)))
         which = int(values.argmax())
@@ -195,7 +195,7 @@ class Search:
 
 
 def plot(folder: Path, title: str, objective: str) -> Figure:
-    """Draw each generation's best and mean, and the best so far on the evaluation's episodes."""
+    """Plot each generation's best and mean, and the best so far on the evaluation episodes."""
     table = read_table(folder / SEARCH)
     figure = Figure(figsize=(8, 4), layout="constrained")
     axes = figure.subplots()

@@ -11,11 +11,11 @@ from .policies import read_config
 from .run_files import EVALUATIONS, METRICS, read_table
 
 PANELS = {"return": "return", "distance": "distance [m]", "success": "success rate"}
-"""Column of the tables, and its label."""
+"""Label of each column of the tables."""
 
 
 def plot_run(run: Path) -> Figure:
-    """Draw a run's learning curve: the training episodes as a line, the evaluations as points with intervals."""
+    """Plot a run's learning curve: training episodes as a line, evaluations as points with intervals."""
     metrics, evaluations = read_table(run / METRICS), read_table(run / EVALUATIONS)
     figure, axes = _panels(title_of([run]))
     for ax, column in zip(axes, PANELS, strict=True):
@@ -37,7 +37,7 @@ def plot_run(run: Path) -> Figure:
 
 
 def title_of(runs: list[Path]) -> str:
-    """Return what runs of one environment are: how they were trained, and their seeds, or how many there are."""
+    """Return a title for runs of one environment: how they were trained, and their seeds."""
     configs = [read_config(run) for run in runs]
     kinds = dict.fromkeys(_kind(config) for config in configs)
     seeds = sorted({config["seed"] for config in configs})
@@ -45,11 +45,11 @@ def title_of(runs: list[Path]) -> str:
 
 
 def _kind(config: dict[str, Any]) -> str:
-    """Return environment, algorithm, and what a run imitated or started from."""
+    """Return environment, algorithm, imitation steps and starting networks of a run."""
     parts = [config["env"].rpartition("/")[2], config["algo"].upper()]
     if config.get("imitate"):
         taught = f"imitation over {config['imitate']:,} steps"
-        # a run without steps of its own learns by imitation alone
+        # without steps, the run learned by imitation alone
         parts[1] = taught if config.get("steps") == 0 else f"{taught}, then {parts[1]}"
     if config.get("start_from"):
         parts.append(f"from {Path(config['start_from']).name}")
@@ -57,13 +57,13 @@ def _kind(config: dict[str, Any]) -> str:
 
 
 def curve_of(run: Path) -> dict[str, np.ndarray]:
-    """Return the table with a run's curve: of training, or of evaluations where it has learned by imitation alone."""
+    """Return the table of a run's learning curve: training metrics, or evaluations if it only imitated."""
     metrics = read_table(run / METRICS)
     return metrics if len(metrics.get("steps", ())) > 1 else read_table(run / EVALUATIONS)
 
 
 def plot_runs(runs: list[Path]) -> Figure:
-    """Draw the mean over several runs of one task, usually seeds, and the range between the lowest and highest."""
+    """Plot mean and range over several runs of one task, usually seeds."""
     tables = [curve_of(run) for run in runs]
     figure, axes = _panels(title_of(runs))
     for ax, column in zip(axes, PANELS, strict=True):
@@ -79,7 +79,7 @@ def _interpolate(grid: np.ndarray, table: dict[str, np.ndarray], column: str) ->
     known = np.isfinite(table[column])
     if not known.any():
         return np.full_like(grid, np.nan)
-    # nothing is known before the first episodes have ended
+    # no values before the first episodes end
     return np.interp(grid, table["steps"][known], table[column][known], left=np.nan, right=np.nan)
 
 

@@ -1,4 +1,4 @@
-"""What the episodes of a training came to, without favour for those that end soon."""
+"""Statistics of training episodes, without bias towards short ones."""
 
 from collections import deque
 from typing import Any
@@ -10,16 +10,16 @@ from stable_baselines3.common.callbacks import BaseCallback
 class Episodes(BaseCallback):
     """Collects the episodes of a batch while an algorithm steps it.
 
-    Episodes that end soon, as with success, are the first to be known: until those that began with them have ended too,
-    a mean over the known ones is one over the soon ended. So an episode counts from when even the longest that began
-    at the same step has ended, and means are over the last ones by their beginning.
+    Short episodes, such as successes, end first, so a mean over ended episodes is biased towards them. An episode
+    therefore counts only once the longest possible episode that began at the same step would have ended, and means
+    are over the last `window` of these, ordered by when they began.
 
     Parameters
     ----------
     longest
         Control steps of the longest episode.
     window
-        How many episodes to take the mean over.
+        Number of episodes to average over.
     """
 
     def __init__(self, *, longest: int, window: int):
@@ -33,7 +33,7 @@ class Episodes(BaseCallback):
         return True
 
     def add(self, infos: list[dict[str, Any]]) -> None:
-        """Take what the environments, which begun together, told at one control step."""
+        """Add the infos of all environments at one control step."""
         self._steps += 1
         for info in infos:
             if "episode" in info:
@@ -41,21 +41,21 @@ class Episodes(BaseCallback):
                 self._ended.append((self._steps - int(told["l"]), told))
 
     def settled(self) -> list[dict[str, float]]:
-        """Return the last episodes, by their beginning, of those of whose beginning no episode is still running."""
+        """Return the last episodes, by when they began, that began at least `longest` steps ago."""
         last = self._steps - self._longest
         whole = sorted((each for each in self._ended if each[0] <= last), key=lambda each: each[0])[-self._window :]
         self._ended = deque([*whole, *(each for each in self._ended if each[0] > last)])
         return [told for _, told in whole]
 
     def mean(self, name: str) -> float:
-        """Return the mean of one of the numbers of the settled episodes, NaN where there are none."""
+        """Return the mean of a quantity over the settled episodes, NaN if there are none."""
         values = [told[name] for told in self.settled()]
         return float(np.mean(values)) if values else float("nan")
 
     def get_state(self) -> tuple[int, list[tuple[int, dict[str, float]]]]:
-        """Return all that is known, to be put into a checkpoint."""
+        """Return the state for a checkpoint."""
         return self._steps, list(self._ended)
 
     def set_state(self, state: tuple[int, list[tuple[int, dict[str, float]]]]) -> None:
-        """Go on from what `get_state` returned."""
+        """Restore the state that `get_state` returned."""
         self._steps, self._ended = state[0], deque(state[1])

@@ -1,4 +1,4 @@
-"""Evaluate a policy: episodes side by side, what they came to, and how sure that is."""
+"""Evaluate a policy over parallel episodes: results and their confidence intervals."""
 
 import dataclasses
 import math
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 LOWEST = {"episodes": 1, "seed": 0, "threads": 1}
 LARGEST_BATCH = 1024
-"""Episodes that run side by side; more than these are run in turns."""
+"""Maximum number of parallel episodes; more are run in batches."""
 ELSEWHERE = math.sqrt(2.0)
-"""How much wider than a confidence interval that is which has what another CPU measures; see `Evaluation.elsewhere`"""
+"""Factor by which the interval for another CPU is wider than a confidence interval; see `Evaluation.elsewhere`"""
 
 
 @dataclasses.dataclass(frozen=True)
 class Evaluation:
-    """What `n` episodes came to; every array has one entry per episode."""
+    """Results of `n` episodes; every array has one entry per episode."""
 
     seeds: np.ndarray
     """Seed of each episode, shape (n,)."""
@@ -41,11 +41,11 @@ class Evaluation:
 
     @property
     def divergences(self) -> int:
-        """Episodes whose numbers stopped being finite."""
+        """Number of diverged episodes."""
         return int(np.sum(self.reasons == "diverged"))
 
     def summary(self) -> dict[str, Any]:
-        """Means, and half widths of 95 % confidence intervals, of everything; ready for JSON."""
+        """Means and half widths of 95 % confidence intervals of all quantities; JSON-serialisable."""
         return {
             "episodes": len(self.returns),
             "first_seed": int(self.seeds[0]),
@@ -63,11 +63,11 @@ class Evaluation:
         }
 
     def elsewhere(self) -> dict[str, list[float]]:
-        """Return where the means over the same seeds are on another CPU, in 95 of 100 cases; ready for JSON.
+        """Return 95 % prediction intervals of the means over the same seeds on another CPU; JSON-serialisable.
 
-        There, episodes are others with the same distribution (`.machine`). The difference of two means over as
-        many independent episodes has twice the variance of either: sqrt(2) times the half width of a confidence
-        interval holds what the other one will be.
+        Episodes on another CPU differ, but have the same distribution (`.machine`). The difference of two means over
+        equally many independent episodes has twice the variance of either, so the prediction interval is sqrt(2) times
+        as wide as the confidence interval.
         """
         found = {}
         for name, values in (("return", self.returns), ("distance", self.distances)):
@@ -76,7 +76,7 @@ class Evaluation:
         return {**found, "success": list(success_interval(self.successes, widened=ELSEWHERE))}
 
     def per_episode(self) -> list[dict[str, Any]]:
-        """Return what each episode came to, ready for JSON."""
+        """Return the results of each episode; JSON-serialisable."""
         return [
             {
                 "seed": int(self.seeds[i]),
@@ -111,10 +111,10 @@ def evaluate(
     env_kwargs: dict | None = None,
     show: Callable[[float], object] | None = None,
 ) -> Evaluation:
-    """Run `policy` for `episodes` episodes of `env_id`, side by side; episode i has the seed ``seed + i``.
+    """Run `policy` for `episodes` parallel episodes of `env_id`; episode i has the seed ``seed + i``.
 
-    What an episode comes to depends on its seed alone, and not on how many run beside it. `show` is called often, with
-    the fraction of the steps that is done.
+    The result of an episode depends only on its seed, not on the number of parallel episodes. `show` is called
+    regularly with the fraction of steps done.
     """
     check_bounds({"episodes": episodes, "seed": seed, "threads": n_threads}, LOWEST)
     parts: list[Evaluation] = []
@@ -154,7 +154,7 @@ def _evaluate_batch(
 def run_episodes(
     policy: "Policy", env: "BatchVecEnv", seeds: Sequence[int], show: Callable[[float], object] | None = None
 ) -> Evaluation:
-    """Run one episode in each environment, with a seed for each; `show` is called with the fraction that is done."""
+    """Run one episode in each environment, one seed each; `show` is called with the fraction done."""
     env.seed(seeds)
     observations = env.reset()
     policy.reset(seeds)
@@ -164,7 +164,7 @@ def run_episodes(
         env.step_async(policy(observations, env.batch))
         observations, _, dones, step_infos = env.step_wait()
         for i in np.flatnonzero(dones):
-            # an environment that is done goes on with episodes that nobody counts until the last one is done
+            # finished environments continue with further episodes, which are ignored
             infos.setdefault(int(i), step_infos[i])
         steps += 1
         if show is not None:
@@ -193,7 +193,7 @@ def _collect(seeds: Sequence[int], infos: list[dict[str, Any]]) -> Evaluation:
 
 
 def print_table(title: str, result: Evaluation) -> None:
-    """Print what the episodes came to, a line per quantity."""
+    """Print the results, one line per quantity."""
     from rich.console import Console
     from rich.table import Table
 
@@ -220,7 +220,7 @@ def _rows(summary: dict[str, Any]) -> Iterator[tuple[str, float, float]]:
 
 
 def success_interval(successes: np.ndarray, *, widened: float = 1.0) -> tuple[float, float]:
-    """Return the 95 % confidence interval of a success rate (Wilson 1927), or one that is wider by a factor."""
+    """Return the 95 % confidence interval of a success rate (Wilson 1927), `widened` by a factor."""
     from scipy import stats
 
     level = 1.0 - 2.0 * stats.norm.sf(widened * stats.norm.isf(0.025))

@@ -1,4 +1,4 @@
-"""Films and recordings of an episode: an H.264 video, an animated GIF, or a file for rerun."""
+"""Films and recordings of an episode: H.264 video, animated GIF, or rerun file."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,20 +12,20 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".mp4", ".gif")
 COLORS = 64
-"""Of a GIF: more make it larger, and hardly better"""
+"""Colours of a GIF: more increase its size and hardly improve it"""
 SIZE = (640, 360)
-"""Width and height of a film unless others are asked for [pixels]"""
+"""Default width and height of a film [pixels]"""
 LARGEST_SIDE = 2048
-"""Of a picture [pixels]"""
+"""Maximum width or height [pixels]"""
 
 
 def check_film(path: Path, size: tuple[int, int]) -> None:
-    """Make sure, before an episode is run for it, that a film can be made: packages, folder, file, renderer.
+    """Check that a film can be made, before running an episode: packages, folder, file, renderer.
 
     Raises
     ------
     BadInputError
-        If it cannot; the message says why.
+        If not; the message gives the reason.
     """
     choose("kind of film", path.suffix, SUFFIXES)
     if not all(1 <= side <= LARGEST_SIDE and side % 2 == 0 for side in size):
@@ -50,20 +50,20 @@ def film(
     size: tuple[int, int] = SIZE,
     env_kwargs: dict[str, Any] | None = None,
 ) -> Path:
-    """Run an episode, draw it, write it to a file, and say where that is.
+    """Run an episode, render it to a file, and print the path.
 
     Parameters
     ----------
     policy
-        Whose episode.
+        Policy to run.
     env_id
-        Id of the environment.
+        Environment id.
     path
-        The file, which ends in .mp4 or .gif.
+        Output file, ending in .mp4 or .gif.
     seed
-        Of the episode.
+        Seed of the episode.
     every
-        Control steps from one frame to the next; the film is as fast as the animal.
+        Control steps between frames; the film plays in real time.
     size
         Width and height [pixels], even numbers.
     env_kwargs
@@ -88,7 +88,7 @@ def film(
 
 
 def run_shown(policy: "Policy", env_id: str, *, seed: int, env_kwargs: dict[str, Any]) -> Any:
-    """Run one episode of a policy that has begun it, show how far it is, and return the rollout."""
+    """Run one episode with a policy that has been reset, show progress, and return the rollout."""
     from ..progress import Bar
     from ..viz import run_rollout
 
@@ -102,18 +102,18 @@ def run_shown(policy: "Policy", env_id: str, *, seed: int, env_kwargs: dict[str,
 
 
 def _write_gif(frames: np.ndarray, path: Path, seconds: float) -> None:
-    """Write frames (T, height, width, 3) as an animated GIF that repeats, with so many seconds for each."""
+    """Write frames (T, height, width, 3) as a looping GIF, each shown for `seconds`."""
     from PIL import Image
 
     pictures = [Image.fromarray(frame) for frame in frames]
-    # one palette for all, or colours flicker
+    # one palette for all frames prevents flicker
     palette = Image.fromarray(np.concatenate(frames[:: max(1, len(frames) // 8)])).quantize(COLORS)
     pictures = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
     pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=1000.0 * seconds, loop=0, optimize=True)
 
 
 def record(policy: "Policy", env_id: str, *, seed: int, path: Path, env_kwargs: dict[str, Any]) -> Path | None:
-    """Record the episode with `seed` for rerun; without rerun, say how to get it and return None."""
+    """Record the episode with `seed` for rerun; if rerun is missing, print how to install it and return None."""
     if message := missing_extra("viz"):
         print(f"no recording: {message}")
         return None

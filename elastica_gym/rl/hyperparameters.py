@@ -1,4 +1,4 @@
-"""Hyperparameters from the files in ``configs/``, which rl_zoo3 reads as well."""
+"""Hyperparameters from ``configs/``, in rl_zoo3's format."""
 
 import ast
 import importlib
@@ -21,45 +21,45 @@ NOT_CONFIGURABLE = {
     *("self", "env", "seed", "verbose", "tensorboard_log", "_init_setup_model"),
     *("action_noise", "device", "replay_buffer_class", "rollout_buffer_class"),
 }
-"""Arguments of the algorithms that training sets itself, or that are objects and not values."""
+"""Arguments of the algorithms that training sets itself, or that are objects rather than values."""
 
 LITERALS = ("normalize", "policy_kwargs", "replay_buffer_kwargs", "rollout_buffer_kwargs")
-"""Keys whose value may be written as a text of Python, such as ``dict(norm_obs=True)``"""
+"""Keys whose value may be a string of Python, such as ``dict(norm_obs=True)``"""
 
 SET_BY_POLICIES = {
     *("self", "args", "kwargs", "observation_space", "action_space", "lr_schedule"),
     *("features_extractor_class", "features_extractor_kwargs", "optimizer_class"),
 }
-"""Arguments of policies that the algorithm sets, or that are objects and not values"""
+"""Arguments of policies that the algorithm sets, or that are objects rather than values"""
 
 SCHEDULES = ("learning_rate", "clip_range", "clip_range_vf")
-"""Keys whose value may be ``lin_<start>``: falling linearly from start to zero over the budget."""
+"""Keys whose value may be ``lin_<start>``: linear decay from start to zero over the budget."""
 
 
 def algorithm_class(algo: str) -> Any:
-    """Return the class of Stable-Baselines3 called `algo`."""
+    """Return the Stable-Baselines3 class called `algo`."""
     import stable_baselines3
 
     return getattr(stable_baselines3, choose("algorithm", algo, ALGORITHMS).upper())
 
 
 def valid_keys(algo: str) -> set[str]:
-    """Return the keys that a configuration of `algo` may have."""
+    """Return the valid configuration keys of `algo`."""
     arguments = inspect.signature(algorithm_class(algo).__init__).parameters
     return set(arguments) - NOT_CONFIGURABLE | set(OWN_KEYS)
 
 
 def load(algo: str, env_id: str, *, config: Path | None = None, overrides: dict[str, Any] | None = None) -> dict:
-    """Return the hyperparameters of `algo` on `env_id` as they are written, with `overrides` put over them.
+    """Return the hyperparameters of `algo` on `env_id` as written, updated with `overrides`.
 
     Parameters
     ----------
     algo, env_id
-        Which file and which of its keys.
+        Select the file and its entry.
     config
         Another file of the same format.
     overrides
-        Values that go before the file's.
+        Values that take precedence over the file's.
     """
     path = config or CONFIGS / f"{choose('algorithm', algo, ALGORITHMS)}.yml"
     try:
@@ -68,7 +68,7 @@ def load(algo: str, env_id: str, *, config: Path | None = None, overrides: dict[
         raise BadInputError(f"Cannot read the configuration {path}: {error.strerror}") from error
     except yaml.YAMLError as error:
         raise BadInputError(f"The configuration {path} is not YAML: {error}") from error
-    # an id may have the module before it that registers it
+    # an id may be prefixed with the module that registers it
     name = env_id.rpartition(":")[2]
     entry = entries.get(name, entries.get("default")) if isinstance(entries, dict) else None
     if not isinstance(entry, dict):
@@ -77,19 +77,19 @@ def load(algo: str, env_id: str, *, config: Path | None = None, overrides: dict[
 
 
 def checked(algo: str, values: dict[str, Any]) -> dict[str, Any]:
-    """Return hyperparameters of `algo` with numbers that were written as texts, as YAML reads 1e-3, as numbers.
+    """Return checked hyperparameters of `algo`, with strings such as YAML's 1e-3 converted to numbers.
 
     Raises
     ------
     BadInputError
-        If a key is unknown, or a value is not allowed; the message names both and says what is.
+        If a key is unknown or a value is not allowed; the message names both and the allowed values.
     """
     allowed = ALLOWED[choose("algorithm", algo, ALGORITHMS)]
     kept = {}
     for key, value in values.items():
         rule = allowed[choose(f"key of the {algo} configuration", str(key), valid_keys(algo))]
         if key in LITERALS and isinstance(value, str):
-            # kept as it is written
+            # kept as written
             read_value(key, literal(value, name=key), rule)
             kept[key] = value
         else:
@@ -99,7 +99,7 @@ def checked(algo: str, values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _check_parts(algo: str, values: dict[str, Any]) -> None:
-    """Check what is inside of mappings, and what depends on more than one key."""
+    """Check the contents of mappings, and conditions on several keys."""
     if "policy" not in values:
         raise BadInputError(f"The {algo} configuration has no policy, such as MlpPolicy.")
     policy = policy_class(algo, values["policy"])
@@ -112,14 +112,14 @@ def _check_parts(algo: str, values: dict[str, Any]) -> None:
 
 
 def _mapping(values: dict[str, Any], key: str) -> dict[Any, Any]:
-    """Return the mapping that a value is, or that its text stands for."""
+    """Return a value that is a mapping, or a string of one; otherwise an empty mapping."""
     value = values.get(key)
     value = literal(value) if isinstance(value, str) else value
     return value if isinstance(value, dict) else {}
 
 
 def _arguments_of(cls: type) -> set[str]:
-    """Return the names of all arguments that a class and those that it derives from can be made with."""
+    """Return the names of all constructor arguments of a class and its bases."""
     inits = (vars(base)["__init__"] for base in cls.__mro__ if "__init__" in vars(base) and base is not object)
     return {name for init in inits for name in inspect.signature(init).parameters}
 
@@ -139,12 +139,12 @@ def parse_overrides(assignments: list[str]) -> dict[str, Any]:
 
 
 def timesteps(values: dict[str, Any]) -> int:
-    """Return the environment steps to train for that `values` ask for."""
+    """Return the number of environment steps to train for."""
     return read_value("n_timesteps", values.get("n_timesteps"), ALLOWED["ppo"]["n_timesteps"])
 
 
 def algorithm_arguments(values: dict[str, Any]) -> dict[str, Any]:
-    """Return the keyword arguments of the algorithm's class that `values`, as written in a file, stand for."""
+    """Return the keyword arguments of the algorithm's class, from `values` as written in a file."""
     arguments = {key: value for key, value in values.items() if key not in OWN_KEYS}
     for key in SCHEDULES:
         if isinstance(arguments.get(key), str):
@@ -160,7 +160,7 @@ def algorithm_arguments(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def policy_class(algo: str, name: str) -> Any:
-    """Return the class of a policy: one of the algorithm's own, or one that is written with its module."""
+    """Return the class of a policy: an alias of the algorithm, or ``module.Class``."""
     from stable_baselines3.common.policies import ActorCriticPolicy
     from stable_baselines3.sac.policies import SACPolicy
 
@@ -174,7 +174,7 @@ def policy_class(algo: str, name: str) -> Any:
 
 
 def _imported(name: str) -> Any:
-    """Return what is written with its module, as rl_zoo3 has it."""
+    """Import ``module.Class``, as rl_zoo3 does."""
     module, _, attribute = name.rpartition(".")
     try:
         return getattr(importlib.import_module(module), attribute)
@@ -183,7 +183,7 @@ def _imported(name: str) -> Any:
 
 
 def normalize_arguments(values: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the keyword arguments of ``VecNormalize`` that `values` ask for, or None for no normalisation."""
+    """Return the keyword arguments of ``VecNormalize``, or None for no normalisation."""
     normalize = values.get("normalize", False)
     if isinstance(normalize, str):
         normalize = literal(normalize)
@@ -199,9 +199,9 @@ def _schedule(text: str) -> Any:
 
 
 def literal(text: str, *, name: str = "value") -> Any:
-    """Read a Python literal that may also have ``dict(...)`` and names from ``torch.nn`` like ``nn.Tanh``.
+    """Parse a Python literal that may contain ``dict(...)`` and names from ``torch.nn`` like ``nn.Tanh``.
 
-    rl_zoo3 evaluates such strings; here nothing is run. Errors call it by `name`.
+    rl_zoo3 evaluates such strings; this does not execute code. Error messages refer to the value as `name`.
     """
     try:
         return _value(ast.parse(text.strip(), mode="eval").body)

@@ -1,7 +1,7 @@
-"""Imitation: before it learns from rewards, a network learns to do what the task's scripted policy does.
+"""Imitation: a network learns to act like the task's scripted policy before it learns from rewards.
 
-The data grow by DAgger (Ross, Gordon and Bagnell 2011, "A reduction of imitation learning and structured prediction to
-no-regret online learning", algorithm 3.1): the script says what it would do wherever the network has come by itself.
+Data are aggregated by DAgger (Ross, Gordon and Bagnell 2011, "A reduction of imitation learning and structured
+prediction to no-regret online learning", algorithm 3.1): the script labels the states that the network visits.
 """
 
 from collections.abc import Callable, Iterator
@@ -18,22 +18,22 @@ from .seeds import training_seeds
 from .vec_env import BatchVecEnv
 
 ROUNDS = 40
-"""Rounds in which steps are taken and the network is fitted to all of them so far"""
+"""Rounds of taking steps and fitting the network to all data so far"""
 EPOCHS = 4
 """Passes over the data in each round"""
 LAST_EPOCHS = 20
-"""Passes over all of them in the end"""
+"""Passes over the data in the last round"""
 BATCH_SIZE = 512
 SCRIPTED = 4
-"""In every so many-th environment the script acts, so that the network sees where a script that does well gets"""
+"""The script acts in every `SCRIPTED`-th environment, so that the data include the states it reaches"""
 CRITIC = ("value_net", "mlp_extractor.value_net")
 """Parameters that a policy does not need to act"""
 CRITIC_UPDATES = 6
-"""First updates after imitation that leave the actor as it is"""
+"""Number of updates after imitation in which only the critic learns"""
 LEARNING_RATES = (1e-3, 1e-4)
-"""Of Adam, at the beginning of each round's passes and at their end"""
+"""Of Adam, at the beginning and end of each round's passes"""
 GOING_ON = 0.1
-"""Part of these rates for networks that do the task already, and should not lose it to the first few steps"""
+"""Factor on these rates for networks already trained on the task, so that the first steps do not undo it"""
 
 
 def imitate(
@@ -47,24 +47,24 @@ def imitate(
 ) -> None:
     """Fit the mean actions of a model to those of the scripted policy of its task.
 
-    In the first round the script acts, later it does in some environments and the model in the others. The statistics
-    by which observations are normalised, if they are, become those of all that has been seen. A model that goes on acts
-    from the first round on, keeps its statistics, and learns more slowly.
+    The script acts alone in the first round; in later rounds it acts in some environments and the model in the others.
+    Normalisation statistics, if any, are updated with all observations. A model that continues (`goes_on`) acts from
+    the first round, keeps its statistics, and learns more slowly.
 
     Parameters
     ----------
     model
-        A PPO model, which explores as always.
+        A PPO model; its exploration is unchanged.
     adapter
-        The environments, which are reset and left where they are.
+        The environments; they are reset at the start, but not at the end.
     steps
-        Environment steps to take, over all of them, up to whole steps of all in each round. The model counts them.
+        Environment steps over all environments, rounded to whole batch steps in each round. The model counts them.
     show
-        Called often, with the part that is done and, once there is one, the mean square difference from the script.
+        Called regularly with the fraction done and, once known, the mean square difference from the script.
     after_round
-        Called with the part that is done; imitation ends where it returns False.
+        Called with the fraction done; imitation ends if it returns False.
     goes_on
-        Whether the model's networks have learned the same task before.
+        Whether the model's networks were already trained on this task.
     """
     optimizer = torch.optim.Adam(model.policy.parameters())
     slowness = GOING_ON if goes_on else 1.0
@@ -95,13 +95,13 @@ def imitate(
 
 
 def _played(model: Any, observations: np.ndarray, scripted: np.ndarray) -> np.ndarray:
-    """Return what is done: by the script in some environments, by the model as it is in the others."""
+    """Return the actions taken: the script's in some environments, the model's in the others."""
     own, _ = model.predict(_normalized(model, observations), deterministic=True)
     return np.where(np.arange(len(own))[:, None] % SCRIPTED == 0, scripted, own)
 
 
 def _learn_scale(model: Any, seen: np.ndarray, n_new: int) -> None:
-    """Take the scale of what is seen from all observations so far, or add the last ones to the statistics there are."""
+    """Fit the scale of observations to all so far, or add the new ones to the existing statistics."""
     statistics, extractor = model.get_vec_normalize_env(), model.policy.features_extractor
     if isinstance(extractor, Rhythms):
         extractor.fit(torch.as_tensor(seen))
@@ -111,7 +111,7 @@ def _learn_scale(model: Any, seen: np.ndarray, n_new: int) -> None:
 
 @contextmanager
 def critic_alone(policy: Any, first: bool) -> Iterator[None]:
-    """Keep the actor as it is, if asked to: what it can do already would be lost to a critic that knows nothing yet."""
+    """Freeze the actor if `first`, so that the untrained critic does not undo imitation."""
     actor = [p for name, p in policy.named_parameters() if not name.startswith(CRITIC)] if first else []
     for parameter in actor:
         parameter.requires_grad_(False)
@@ -128,7 +128,7 @@ def _normalized(model: Any, observations: np.ndarray) -> np.ndarray:
 
 
 def _fit(policy: Any, optimizer: torch.optim.Optimizer, observations: Tensor, actions: Tensor) -> float:
-    """Pass once over the data, in random order, and return the mean square difference."""
+    """Run one pass over the data in random order, and return the mean square difference."""
     policy.set_training_mode(True)
     total = 0.0
     for rows in torch.randperm(len(observations)).split(BATCH_SIZE):
@@ -142,6 +142,6 @@ def _fit(policy: Any, optimizer: torch.optim.Optimizer, observations: Tensor, ac
 
 
 def _difference(mean: Tensor, actions: Tensor) -> Tensor:
-    """Return the mean square difference; more than a muscle can do is as good as all that it can."""
+    """Return the mean square difference, ignoring means beyond a saturated action of the same sign."""
     is_more = (actions.abs() >= 1.0) & (mean * actions > 1.0)
     return torch.mean(torch.where(is_more, 0.0, mean - actions) ** 2)

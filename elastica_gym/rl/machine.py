@@ -1,9 +1,9 @@
-"""Where numbers come from: the machine, the versions and the commit that they were computed with.
+"""Provenance of results: the machine, package versions and commit they were computed with.
 
-The same policy and seeds give the same bits, whatever the batch and the number of threads, where the kernels are the
-same: the physics is compiled for the CPU it runs on, with the instructions and vectors that this CPU has. On another
-CPU sums are rounded otherwise, and contact with friction amplifies that within seconds to other episodes, as likely as
-these. The networks, too, are computed by libraries that choose their instructions by the CPU.
+With equal kernels, the same policy and seeds give bit-identical results for any batch size and number of threads. The
+physics is compiled for the CPU it runs on, with its instructions and vector width. On another CPU sums are rounded
+differently, and contact with friction amplifies this within seconds into different, equally likely episodes. The
+networks, too, are computed by libraries that choose instructions by CPU.
 """
 
 import importlib.metadata
@@ -18,13 +18,13 @@ VERSIONS = ("elastica-gym", "stable-baselines3", "torch", "numpy", "numba", "gym
 
 
 def describe() -> dict[str, Any]:
-    """Return what decides the bits of a result, ready for JSON and YAML.
+    """Return everything that determines the bits of a result; serialisable as JSON and YAML.
 
     Returns
     -------
     dict
-        ``cpu``, its model and the one that the physics is compiled for; ``kernels``, a digest that is equal where the
-        compiled physics is; ``commit`` of this repository, or None outside of one; and ``versions``.
+        ``cpu``, its model and the physics' compilation target; ``kernels``, a digest of the compiled physics;
+        ``commit`` of this repository, or None outside of one; and ``versions``.
     """
     from ..engine.jit.cache import cache_folder
 
@@ -32,10 +32,10 @@ def describe() -> dict[str, Any]:
 
 
 def cpu() -> str:
-    """Return the model of this machine's CPU, and the name by which LLVM knows what it compiles for."""
+    """Return the model of this machine's CPU, and LLVM's name for the compilation target."""
     from llvmlite import binding
 
-    # which Numba compiles for instead if it is set
+    # overrides Numba's target CPU
     chosen = os.environ.get("NUMBA_CPU_NAME")
     return f"{_model()}, compiled for {chosen or binding.get_host_cpu_name()}"
 
@@ -50,8 +50,8 @@ def _model() -> str:
 
 
 def commit() -> str | None:
-    """Return the commit of this repository, with "with changes" where files differ from it, or None outside of one."""
-    # a package that is installed may lie inside of another repository
+    """Return the commit of this repository, marked "with changes" if files differ, or None outside of one."""
+    # an installed package may lie inside another repository
     if Path(_git("rev-parse", "--show-toplevel") or "/").resolve() != ROOT:
         return None
     found = _git("rev-parse", "HEAD")
@@ -61,17 +61,17 @@ def commit() -> str | None:
 def _git(*command: str) -> str:
     try:
         done = subprocess.run(["git", "-C", str(ROOT), *command], capture_output=True, text=True)
-    except OSError:  # there is no git
+    except OSError:  # git is not installed
         return ""
     return done.stdout.strip() if done.returncode == 0 else ""
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that decide results."""
+    """Return the versions of Python and of the packages that affect results."""
     found = {"python": platform.python_version()}
     for package in VERSIONS:
         try:
             found[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:  # a bare clone that was not installed
+        except importlib.metadata.PackageNotFoundError:  # a clone that is not installed
             continue
     return found

@@ -1,4 +1,4 @@
-"""Policies behind one interface: zero, random, scripted, and trained runs."""
+"""Policies with a common interface: zero, random, scripted, and trained."""
 
 import dataclasses
 import pickle
@@ -18,15 +18,15 @@ from .hyperparameters import algorithm_class, normalize_arguments
 BASELINES = ("zero", "random", "scripted", "seed_gait")
 
 ROWS_PER_FORWARD = 64
-"""A network is always evaluated on this many rows at once: matrix products of other sizes round differently, and what
-an episode does must not depend on how many others run beside it."""
+"""Batch size of every forward pass: matrix products of other sizes round differently, and an episode must not depend on
+the number of parallel episodes."""
 
 
 class Policy(Protocol):
-    """What evaluation asks of a policy."""
+    """The interface of a policy."""
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Begin one episode in each environment; `seeds` has one seed per environment."""
+        """Begin one episode in each environment, with one seed each."""
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
         """Return the actions (n, A) for `observations` (n, d) of the environment `batch`."""
@@ -36,7 +36,7 @@ class ZeroPolicy:
     """Every muscle at rest."""
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Nothing to begin."""
+        """Do nothing."""
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
         """Return zeros."""
@@ -44,10 +44,10 @@ class ZeroPolicy:
 
 
 class RandomPolicy:
-    """Actions drawn uniformly, afresh at every control step, from a generator per episode."""
+    """Actions drawn uniformly at every control step, from one generator per episode."""
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Seed one generator per environment, not that which draws its start."""
+        """Seed one generator per environment, independent of its initial state."""
         self._generators = [np.random.default_rng([seed, 1]) for seed in seeds]
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
@@ -57,10 +57,10 @@ class RandomPolicy:
 
 
 class FullStrengthPolicy:
-    """Every muscle at full strength: groups of one arm and direction pull together, in signs drawn every 0.4 s."""
+    """Every muscle at full strength; each group of one arm and direction has a common sign, redrawn every 0.4 s."""
 
     HOLD = 8
-    """Control steps between two draws"""
+    """Control steps between draws"""
 
     def reset(self, seeds: Sequence[int]) -> None:
         """Seed one generator per environment, as `RandomPolicy` does."""
@@ -78,28 +78,28 @@ class FullStrengthPolicy:
 
 
 class ScriptedPolicy:
-    """A script, which may look at the whole state.
+    """A script, which has access to the whole state.
 
     Parameters
     ----------
     script
-        From a batch, its actions (n, A); by default the task's own.
+        Function from a batch to actions (n, A); by default the task's script.
     """
 
     def __init__(self, script: Callable[[Any], np.ndarray] | None = None):
         self._script = script
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Nothing to begin: a script looks at the clock of its environment."""
+        """Do nothing: a script reads the clock of its environment."""
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
-        """Return what the script does."""
+        """Return the actions of the script."""
         return (self._script or scripted_policy(batch.task))(batch).astype(np.float32)
 
 
 @dataclasses.dataclass(frozen=True)
 class Statistics:
-    """The normalisation of observations of a ``VecNormalize``, without the rest of it; its fields are arrays (d,)."""
+    """The observation statistics of a ``VecNormalize``; arrays are (d,)."""
 
     mean: np.ndarray
     variance: np.ndarray
@@ -107,20 +107,20 @@ class Statistics:
     clip: float
 
     def normalize_obs(self, observations: np.ndarray) -> np.ndarray:
-        """Return observations with mean 0 and variance 1, clipped, as ``VecNormalize`` computes them."""
+        """Scale observations to mean 0 and variance 1 and clip them, like ``VecNormalize``."""
         scaled = (observations - self.mean) / np.sqrt(self.variance + self.epsilon)
         return np.clip(scaled, -self.clip, self.clip).astype(np.float32)
 
 
 class TrainedPolicy:
-    """A Stable-Baselines3 model with the normalisation it was trained with; its mean action, without exploration.
+    """The mean action, without exploration, of a Stable-Baselines3 model with its normalisation.
 
     Parameters
     ----------
     model
         A PPO or SAC model.
     normalization
-        The ``VecNormalize`` of its training, or its `Statistics`, or None.
+        The ``VecNormalize`` or `Statistics` of its training, or None.
     """
 
     def __init__(self, model: Any, normalization: Any | None):
@@ -128,7 +128,7 @@ class TrainedPolicy:
         self.normalization = normalization
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Nothing to begin: the network has no memory."""
+        """Do nothing: the network has no memory."""
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
         """Return the mean actions of the model."""
@@ -154,12 +154,12 @@ def baseline(name: str) -> Policy:
 
 
 def load_run(run: Path) -> tuple[TrainedPolicy, dict[str, Any]]:
-    """Load a run's final model, or while there is none, that of its last whole checkpoint.
+    """Load a run's final model, or if there is none yet, that of its last intact checkpoint.
 
     Parameters
     ----------
     run
-        A folder that ``python -m agents.train`` wrote, or one with its ``config.yml``, ``model.zip`` and, if it
+        A folder written by ``python -m agents.train``, or one with its ``config.yml``, ``model.zip`` and, if it
         normalises, ``vecnormalize.pkl``.
 
     Returns
@@ -167,7 +167,7 @@ def load_run(run: Path) -> tuple[TrainedPolicy, dict[str, Any]]:
     policy
         The model with its normalisation.
     config
-        What the run was started with: ``env``, ``algo``, ``hyperparameters`` and more.
+        The run's configuration: ``env``, ``algo``, ``hyperparameters`` and more.
     """
     from .checkpoints import last_whole_checkpoint
 
@@ -183,7 +183,7 @@ def load_run(run: Path) -> tuple[TrainedPolicy, dict[str, Any]]:
 
 
 def read_config(run: Path) -> dict[str, Any]:
-    """Return what ``config.yml`` of the run says."""
+    """Return the ``config.yml`` of a run."""
     try:
         config = yaml.safe_load((run / "config.yml").read_text())
     except OSError as error:
@@ -197,18 +197,18 @@ def read_config(run: Path) -> dict[str, Any]:
 
 
 def load_model(path: Path, algo: str, **arguments: Any) -> Any:
-    """Load a Stable-Baselines3 model; `arguments` go to its ``load``."""
+    """Load a Stable-Baselines3 model; `arguments` are passed to its ``load``."""
     use_one_thread()
     try:
         return algorithm_class(algo).load(path, device="cpu", **arguments)
-    except Exception as error:  # a damaged archive fails in as many ways as there are bytes in it
+    except Exception as error:  # a damaged archive can raise almost anything
         raise BadInputError(f"The model {path} is missing or damaged: {type(error).__name__}: {error}") from error
 
 
 def use_one_thread() -> None:
-    """Let torch compute on one thread.
+    """Make torch use one thread.
 
-    Networks this small gain nothing from a second thread, and lose much where other processes keep it waiting.
+    Networks this small gain nothing from a second thread, and are slowed down by it on a busy machine.
     """
     import torch
 

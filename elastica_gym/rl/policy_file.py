@@ -1,4 +1,4 @@
-"""Policies that are Python files. Imports little, since a process is started for each."""
+"""Policies in Python files. Imports little, since each policy starts a process."""
 
 import sys
 from collections.abc import Callable, Sequence
@@ -14,8 +14,8 @@ from ..console.bad_input import BadInputError
 class FilePolicy:
     """A Python file with a function ``policy(observation)``, from an observation (d,) to an action (42,).
 
-    The file is run afresh for every episode: its global variables are its memory of that episode. If it
-    has a function ``reset()``, that is called when the episode begins.
+    The file is executed once per episode, so global variables are its memory of that episode. If it has a function
+    ``reset()``, that is called at the start of the episode.
 
     Parameters
     ----------
@@ -26,11 +26,11 @@ class FilePolicy:
     def __init__(self, path: Path):
         self._path = path
         self._episodes: list[Callable[[np.ndarray], Any]] = []
-        # what is beside the file may be imported by it
+        # the file may import modules next to it
         sys.path.insert(0, str(path.resolve().parent))
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Run the file once for each of as many episodes as there are seeds, which the file does not get."""
+        """Execute the file once per seed; the seeds themselves are not passed on."""
         self._episodes = [self._run(i) for i in range(len(seeds))]
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""A policy that feels clocks of given periods, for strokes whose period is not that of the clock that animals feel."""
+"""A policy that observes clocks of given periods, for strokes that do not match the clock in the observation."""
 
 from typing import Any
 
@@ -11,24 +11,24 @@ from torch import Tensor
 from .symmetry import named
 
 MOST = 10.0
-"""Deviations from the mean to which what is seen is clipped"""
+"""Observations are clipped to this many standard deviations from the mean"""
 LEAST_DEVIATION = 1e-3
-"""Below which a number that is seen counts as constant"""
+"""Lower bound on the standard deviation of an observation"""
 
 
 class Rhythms(BaseFeaturesExtractor):
-    """What is seen, each number with mean 0 and deviation 1, and sine and cosine of clocks, (B, d + 2 p).
+    """Observations with mean 0 and standard deviation 1, and sine and cosine of clocks, (B, d + 2 p).
 
     Parameters
     ----------
     observation_space : spaces.Box
-        Of d numbers, which are not normalised, for the clocks go by one of them.
+        Of d observations; not normalised, since the clocks are computed from one of them.
     time_left : int
-        Which of them is the part of the episode that is left.
+        Index of the remaining fraction of the episode.
     duration : float
-        Of episodes [s].
+        Duration of episodes [s].
     periods : sequence of float
-        Of p clocks, which begin with the episode [s].
+        Periods of p clocks, which start with the episode [s].
     """
 
     mean: Tensor
@@ -41,11 +41,11 @@ class Rhythms(BaseFeaturesExtractor):
         self.time_left = time_left
         self.register_buffer("mean", torch.zeros(width))
         self.register_buffer("deviation", torch.ones(width))
-        # not saved: networks may be taken over to episodes of another duration
+        # not saved: networks may be reused with another episode duration
         self.register_buffer("rates", 2.0 * torch.pi * duration / torch.as_tensor(periods), persistent=False)
 
     def fit(self, observations: Tensor) -> None:
-        """Take mean and deviation from observations (n, d)."""
+        """Set mean and standard deviation from observations (n, d)."""
         self.mean.copy_(observations.mean(dim=0))
         self.deviation.copy_(observations.std(dim=0).clamp(min=LEAST_DEVIATION))
 
@@ -57,12 +57,12 @@ class Rhythms(BaseFeaturesExtractor):
 
 
 class RhythmicPolicy(ActorCriticPolicy):
-    """Stable-Baselines3's ``MlpPolicy`` that feels further clocks. Imitation fits the scale of what it sees.
+    """Stable-Baselines3's ``MlpPolicy`` with additional clocks. Imitation fits the scale of its observations.
 
     Parameters
     ----------
     periods : sequence of float
-        Of the clocks [s]; by default there are none.
+        Periods of the clocks [s]; by default none.
     """
 
     def __init__(self, observation_space: spaces.Space, *args: Any, periods: tuple[float, ...] = (), **kwargs: Any):

@@ -1,4 +1,4 @@
-"""The tables of a run: a row per update, per evaluation, or per generation of a search."""
+"""The tables of a run: one row per update, per evaluation, or per generation of a search."""
 
 import csv
 import errno
@@ -12,21 +12,21 @@ import numpy as np
 METRICS = "metrics.csv"
 EVALUATIONS = "evaluations.csv"
 BEST = "best"
-"""Folder in a run with the model that has evaluated best; to be used like a run"""
+"""Folder in a run with the model of the best evaluation; usable like a run"""
 SEARCH = "search.csv"
 GAIT = "gait.yml"
 """The best gait of a search"""
 
 
 class Table:
-    """A CSV file that grows by rows and can be cut back to what a checkpoint knew.
+    """A CSV file that grows by rows and can be truncated to its size at a checkpoint.
 
     Parameters
     ----------
     path
         The file.
     size
-        Bytes to keep of an existing file; 0 starts it anew.
+        Bytes to keep of an existing file; 0 starts a new one.
     """
 
     def __init__(self, path: Path, *, size: int = 0):
@@ -34,13 +34,13 @@ class Table:
         if size:
             with path.open(newline="") as file:
                 self._columns = next(csv.reader(file))
-        # unbuffered: a row that the full disk refuses must fail here, and not again when the file is closed
+        # unbuffered: on a full disk a row must fail here, and not again in close
         self._file = path.open("r+b" if size else "wb", buffering=0)
         self._file.truncate(size)
         self._file.seek(size)
 
     def append(self, row: dict[str, Any]) -> None:
-        """Write a row; the first row's keys are the columns, and later ones may leave some out."""
+        """Write a row; the first row's keys are the columns, later rows may omit some."""
         text = io.StringIO()
         writer = csv.writer(text)
         if self._columns is None:
@@ -66,7 +66,7 @@ def _text(value: Any) -> str:
 
 
 def read_table(path: Path) -> dict[str, np.ndarray]:
-    """Return the columns of a table, empty cells as NaN; no columns if the file has no rows or does not exist."""
+    """Return the columns of a table, with empty cells as NaN; no columns if the file is missing or has no rows."""
     if not path.exists():
         return {}
     with path.open(newline="") as file:

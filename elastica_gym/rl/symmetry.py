@@ -1,4 +1,4 @@
-"""A policy for an animal that is its own mirror image: what it learns on one side it can do on the other."""
+"""A mirror-equivariant policy for a mirror-symmetric animal: what it learns on one side applies to the other."""
 
 from typing import Any
 
@@ -12,12 +12,12 @@ from ..envs.spaces import NamedBox
 
 
 def named(policy: Any, space: spaces.Space) -> NamedBox:
-    """Return the space of an environment, which a policy needs to know what its numbers are.
+    """Return a space that names its components, which the policy needs.
 
     Raises
     ------
     ValueError
-        If it is another, as that of a wrapper which changes observations or actions.
+        If it has no names, as with a wrapper that changes observations or actions.
     """
     if not isinstance(space, NamedBox):
         raise ValueError(
@@ -28,7 +28,7 @@ def named(policy: Any, space: spaces.Space) -> NamedBox:
 
 
 class _Image(nn.Module):
-    """Turns numbers that describe an animal into those of its mirror image."""
+    """Maps observations or actions to those of the mirror image."""
 
     index: Tensor
     sign: Tensor
@@ -36,7 +36,7 @@ class _Image(nn.Module):
     def __init__(self, space: NamedBox):
         super().__init__()
         if space.mirror is None:
-            raise ValueError("SymmetricPolicy needs an animal that is its own mirror image; this one has no mirror")
+            raise ValueError("SymmetricPolicy needs a mirror-symmetric animal; this one has no mirror")
         index, sign = space.mirror.image(space.names)
         self.register_buffer("index", torch.as_tensor(index), persistent=False)
         self.register_buffer("sign", torch.as_tensor(sign, dtype=torch.float32), persistent=False)
@@ -46,7 +46,7 @@ class _Image(nn.Module):
 
 
 class _BothImages(BaseFeaturesExtractor):
-    """What is seen, and its mirror image, (B, 2, d): the layers after it see both, with the same weights."""
+    """Observations and their mirror images, (B, 2, d); later layers process both with the same weights."""
 
     def __init__(self, observation_space: spaces.Box, image: nn.Module):
         super().__init__(observation_space, features_dim=observation_space.shape[0])
@@ -57,7 +57,7 @@ class _BothImages(BaseFeaturesExtractor):
 
 
 class _MeanOfImages(nn.Module):
-    """The mean of a layer's answers to what is seen and to its mirror image, mirrored back."""
+    """The mean of a layer's output and of its mirrored output for the mirror image."""
 
     def __init__(self, layer: nn.Module, image: nn.Module):
         super().__init__()
@@ -69,17 +69,17 @@ class _MeanOfImages(nn.Module):
 
 
 class SymmetricPolicy(ActorCriticPolicy):
-    """Stable-Baselines3's ``MlpPolicy`` that does in the mirror image of a situation the mirror image of what it does.
+    """Stable-Baselines3's ``MlpPolicy``, made mirror-equivariant: a mirrored observation gives the mirrored action.
 
     With networks f and v and the mirror M, its mean action is (f(o) + M f(M o)) / 2 and its value (v(o) + v(M o)) / 2:
     the symmetrised layers of van der Pol et al. 2020, "MDP homomorphic networks", for the group of one reflection.
-    What its numbers are, and where the mirror is, it takes from the spaces of the environment.
+    Names of components and the mirror come from the environment's spaces.
     """
 
     def __init__(self, observation_space: spaces.Space, action_space: spaces.Space, *args: Any, **kwargs: Any):
         seen, done = (_Image(named(self, space)) for space in (observation_space, action_space))
         kwargs |= {"features_extractor_class": _BothImages, "features_extractor_kwargs": {"image": seen}}
         super().__init__(observation_space, action_space, *args, **kwargs)
-        # the optimiser has the layers' weights already, and they stay the same
+        # the optimiser already holds the layers' weights, which stay the same
         self.action_net = _MeanOfImages(self.action_net, done)
         self.value_net = _MeanOfImages(self.value_net, nn.Identity())  # type: ignore[assignment]

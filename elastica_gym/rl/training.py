@@ -1,7 +1,7 @@
-"""The training loop: Stable-Baselines3's algorithms, stepped one iteration at a time.
+"""The training loop: Stable-Baselines3's algorithms, run one iteration at a time.
 
-An iteration ends with the update of the networks. Between two iterations nothing is half done, so that is where a run
-is measured, evaluated, saved and stopped; a run resumed from there goes on as if nothing had happened.
+An iteration ends with an update of the networks. Metrics, evaluations, checkpoints and stops happen only between
+iterations, so that a resumed run continues bit for bit.
 """
 
 import pickle
@@ -39,19 +39,19 @@ from .seeds import training_seeds
 from .vec_env import BatchVecEnv, make_batch_vec_env
 
 SAC_STEPS_PER_ITERATION = 512
-"""Environment steps that make an iteration of SAC, which updates its networks every few steps."""
+"""Environment steps per iteration of SAC, which updates its networks every few steps."""
 
 UPDATE_COLUMNS: dict[type, tuple[str, ...]] = {
     PPO: (),
     SAC: ("learning_rate", "n_updates", "ent_coef", "actor_loss", "critic_loss", "ent_coef_loss"),
 }
-"""What updates of the networks measure that the first iterations, which may be without any, do not"""
+"""Metrics of network updates; the first iterations, without updates, lack them"""
 
 REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
 
 
 class Budget:
-    """How long a run may go on: environment steps, minutes, or what is spent first of both.
+    """The limit of a run: environment steps, minutes, or whichever is reached first.
 
     Parameters
     ----------
@@ -60,9 +60,9 @@ class Budget:
     minutes
         Wall-clock time of training and its evaluations, or None for no limit.
     seconds_before
-        Time [s] spent before this process took over.
+        Time [s] spent before this process started.
     free_steps
-        Environment steps that the budget does not count, those of imitation.
+        Environment steps of imitation, which the budget does not count.
     """
 
     def __init__(self, *, steps: int | None, minutes: float | None, seconds_before: float = 0.0, free_steps: int = 0):
@@ -77,7 +77,7 @@ class Budget:
         return time.monotonic() - self._started
 
     def fraction(self, steps_done: int, *, seconds_ahead: float = 0.0) -> float:
-        """Return how much of the budget is spent, from 0 to 1, or would be in `seconds_ahead`."""
+        """Return the fraction of the budget spent, or that will be spent in `seconds_ahead`."""
         by_steps = 0.0
         if self.steps is not None:
             by_steps = (steps_done - self.free_steps) / self.steps if self.steps else 1.0
@@ -86,16 +86,16 @@ class Budget:
 
 
 class Training:
-    """A run from its folder: made anew or taken up from its last whole checkpoint.
+    """A training run: new, or resumed from its last intact checkpoint.
 
     Parameters
     ----------
     folder
-        The run's folder, which exists.
+        The run's existing folder.
     config
-        What ``config.yml`` says.
+        Contents of ``config.yml``.
     resume
-        Whether to go on from the folder's last whole checkpoint.
+        Whether to continue from the folder's last intact checkpoint.
     """
 
     def __init__(self, folder: Path, config: dict[str, Any], *, resume: bool):
@@ -110,7 +110,7 @@ class Training:
         self._known_env: str | None = None
         if checkpoint is None and config.get("start_from"):
             self._known_env = self._take_over(config["start_from"])
-        # the model has seeded them with its own seed and those that follow, of which runs would share most
+        # the model seeded them with consecutive seeds, most of which other runs would share
         self.adapter.seed(training_seeds(config["seed"], 0, self.adapter.num_envs))
         self.model.set_logger(Logger(folder=None, output_formats=[]))
         self.episodes = Episodes(longest=self.adapter.batch.max_episode_steps, window=self.model._stats_window_size)
@@ -125,15 +125,15 @@ class Training:
         self._checkpoint_at = 0.0
         self._stop = False
 
-    # Making, saving and restoring
+    # Creating, saving and restoring
 
     def _find_checkpoint(self) -> Path | None:
         checkpoints = self.folder / "checkpoints"
         found = last_whole_checkpoint(checkpoints)
         if found is None and checkpoint_folders(checkpoints):
-            raise BadInputError(f"The run {self.folder} has no whole checkpoint to resume from.")
+            raise BadInputError(f"The run {self.folder} has no intact checkpoint to resume from.")
         if found is None:
-            print("The run ended before its first checkpoint: it starts from the beginning.")
+            print("The run ended before its first checkpoint; starting from the beginning.")
         return found
 
     def _make_environment(self, *, n_envs: int, n_threads: int) -> BatchVecEnv:
@@ -155,9 +155,9 @@ class Training:
             raise BadInputError(f"Stable-Baselines3 refuses the hyperparameters: {error}") from error
 
     def _take_over(self, start: str) -> str:
-        """Begin with the networks of another run or a pretrained policy and its statistics, and return its task's id.
+        """Start from the networks and statistics of another run or a pretrained policy, and return its environment id.
 
-        Explores as if new. What is seen here and was not there counts for nothing at first.
+        Exploration starts afresh. New observations have zero weights at first.
         """
         other, known, env_id, algo = _networks(start)
         now = self.adapter.batch.observation_names
@@ -213,7 +213,7 @@ class Training:
             normalize.returns = state["discounted_returns"]
         if isinstance(self.model, SAC):
             self._load_replay_buffer(checkpoint / "replay_buffer.npz")
-        # the generators come last, since making a model seeds them
+        # generators last: creating a model seeds them
         torch.set_rng_state(state["torch"])
         np.random.set_state(state["numpy"])
         random.setstate(state["python"])
@@ -235,7 +235,7 @@ class Training:
     # Running
 
     def run(self) -> bool:
-        """Train until the budget is spent, or until asked to stop, and save. Return whether the budget is spent."""
+        """Train until the budget is spent or a stop is requested, then save. Return whether the budget is spent."""
         previous = {number: signal.signal(number, self._ask_to_stop) for number in (signal.SIGINT, signal.SIGTERM)}
         try:
             with Bar("training", file=sys.stdout) as self.display:
@@ -259,14 +259,14 @@ class Training:
         return finished
 
     def _compile(self) -> None:
-        """Step one environment, so that compiling does not count as training time."""
+        """Step one environment, so that compilation does not count as training time."""
         env = self._make_environment(n_envs=1, n_threads=1)
         env.reset()
         env.step(np.zeros((1, *env.action_space.shape), np.float32))  # type: ignore[misc]
         env.close()
 
     def _imitate(self) -> None:
-        """Learn from the task's script, and evaluate meanwhile."""
+        """Imitate the task's script, with evaluations."""
 
         def after_round(part: float) -> bool:
             self._evaluate_when_due(part)
@@ -317,7 +317,7 @@ class Training:
         self.display.say("Stopping after this update; interrupt once more to stop at once.")
 
     def _measure(self, steps_per_second: float) -> None:
-        """Append what this iteration came to to metrics.csv and to the display."""
+        """Append the metrics of this iteration to metrics.csv and display them."""
         row = {
             "steps": self.model.num_timesteps,
             "seconds": self.budget.seconds,
@@ -337,11 +337,11 @@ class Training:
 
     @property
     def spent(self) -> float:
-        """The part of the budget that is spent, which imitation does not count for unless in minutes."""
+        """The fraction of the budget spent; imitation counts only in minutes."""
         return self.budget.fraction(self.model.num_timesteps)
 
     def _evaluate_when_due(self, part: float) -> None:
-        """Evaluate at the start and whenever another equal part is done, of the budget or of imitation."""
+        """Evaluate at the start and at equal intervals of the budget or of imitation."""
         points = self.config["evaluations"]
         if points and part * points >= self._points_passed:
             self._evaluate()
@@ -387,8 +387,8 @@ class Training:
         self._checkpoint_at = self.budget.seconds
 
     def _finish(self) -> None:
-        """Save the state for a later ``--resume``, the model for use, the curve and recordings of the best model."""
-        # a run that is stopped while it imitates begins anew
+        """Save a checkpoint for ``--resume``, the model, the learning curve, and recordings of the best model."""
+        # a run stopped during imitation restarts from the beginning
         if self._imitated or not self.config.get("imitate"):
             self._checkpoint()
         self._save_policy(self.folder)
@@ -398,7 +398,7 @@ class Training:
             self._record()
 
     def _save_best(self) -> None:
-        """Keep the policy as it is now in a folder that can be used like a run."""
+        """Save the current policy in a folder that can be used like a run."""
         folder = self.folder / BEST
         folder.mkdir(exist_ok=True)
         self._save_policy(folder)
@@ -423,7 +423,7 @@ class Training:
 
     @property
     def last_checkpoint(self) -> Path | None:
-        """The newest checkpoint, if there is one."""
+        """The newest checkpoint, or None."""
         folders = checkpoint_folders(self.folder / "checkpoints")
         return folders[-1] if folders else None
 
@@ -436,7 +436,7 @@ def iterate_ppo(model: PPO, callback: BaseCallback, budget: Budget) -> None:
 
 
 def iterate_sac(model: SAC, callback: BaseCallback, budget: Budget) -> None:
-    """Alternate ``train_freq`` steps and their updates of the networks, for `SAC_STEPS_PER_ITERATION` steps."""
+    """Alternate ``train_freq`` steps and network updates, for `SAC_STEPS_PER_ITERATION` steps."""
     end = model.num_timesteps + SAC_STEPS_PER_ITERATION
     while model.num_timesteps < end:
         collected = model.collect_rollouts(
@@ -467,7 +467,7 @@ def _observation_names(env_id: str) -> tuple[str, ...]:
 
 
 def _networks(start: str) -> tuple[Any, RunningMeanStd | None, str, str]:
-    """Return the model of a pretrained policy or of a run, its statistics, the id of its environment, its algorithm."""
+    """Return model, statistics, environment id and algorithm of a pretrained policy or of a run."""
     if start in cards.names():
         policy, card = cards.load_pretrained(start)
         known = None if policy.normalization is None else transfer.counted(policy.normalization, card["steps"])

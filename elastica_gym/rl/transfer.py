@@ -1,4 +1,4 @@
-"""Networks of one task for another: the animal is the same, but the other task may have more to see."""
+"""Transfer of networks to another task of the same animal, which may have more observations."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,37 +10,36 @@ from stable_baselines3.common.running_mean_std import RunningMeanStd
 from .policies import Statistics
 
 KNOWN = 10_000
-"""How many observations the statistics stand for where some of them are of another task's, and some of none: few, so
-that those of what was not seen before are soon its own"""
+"""Maximum sample count of statistics extended with new observations: few, so that those of the new ones adapt soon"""
 
 
 def places(before: Sequence[str], now: Sequence[str]) -> list[int]:
-    """Return where each observation of one task is among those of another.
+    """Return the index of each observation of one task among those of another.
 
     Raises
     ------
     ValueError
-        If the other task lacks one of them.
+        If the other task lacks one.
     """
     where = {name: i for i, name in enumerate(now)}
     if absent := [name for name in before if name not in where]:
-        raise ValueError(f"observations that are not seen here: {', '.join(absent)}")
+        raise ValueError(f"observations missing here: {', '.join(absent)}")
     return [where[name] for name in before]
 
 
 def widened(
     weights: Mapping[str, torch.Tensor], shapes: Mapping[str, torch.Size], where: Sequence[int]
 ) -> dict[str, torch.Tensor]:
-    """Return weights with inputs for more observations: what is new counts for nothing at first.
+    """Return weights with inputs for more observations; weights of new inputs are zero.
 
     Parameters
     ----------
     weights : mapping of str to Tensor
-        By name, those of the first layers (m, d).
+        Weights by name, (m, d) in the first layers.
     shapes : mapping of str to Size
-        The shapes that they should have: of the first layers (m, D).
+        Target shapes, (m, D) in the first layers.
     where : sequence of int
-        Where the d observations are among the D.
+        Indices of the d observations among the D.
     """
     wide = dict(weights)
     for name, value in weights.items():
@@ -52,21 +51,21 @@ def widened(
 
 
 def statistics(known: Any, n: int, where: Sequence[int]) -> RunningMeanStd:
-    """Return statistics of n observations, some of which are known: mean 0 and no variance yet for the others.
+    """Return statistics of n observations, some of them known; the others start with mean 0 and variance 0.
 
     Parameters
     ----------
     known : RunningMeanStd
-        Those of d observations.
+        Statistics of d observations.
     n : int
-        How many are to be normalised.
+        Number of observations to normalise.
     where : sequence of int
-        Where the d observations are among the n.
+        Indices of the d observations among the n.
     """
     if len(where) == n:
         return known
     wide = RunningMeanStd(shape=(n,))
-    # a variance of one would hide what varies little, such as a commanded speed, for a long time
+    # a variance of one would long hide observations that vary little, such as a commanded speed
     wide.var[:] = 0.0
     wide.mean[np.asarray(where)], wide.var[np.asarray(where)] = known.mean, known.var
     wide.count = min(known.count, KNOWN)
@@ -74,9 +73,9 @@ def statistics(known: Any, n: int, where: Sequence[int]) -> RunningMeanStd:
 
 
 def counted(known: Statistics, count: int) -> RunningMeanStd:
-    """Return the statistics of a pretrained policy as those of so many observations.
+    """Return the statistics of a pretrained policy with a sample count.
 
-    With fewer than there were, they would soon be those of the new task, and the networks see something else.
+    With a smaller count than in training, they would drift to the new task and change the inputs of the networks.
     """
     counted = RunningMeanStd(shape=known.mean.shape)
     counted.mean, counted.var, counted.count = known.mean.copy(), known.variance.copy(), count

@@ -1,4 +1,4 @@
-"""The batched environment presented as a Stable-Baselines3 ``VecEnv``."""
+"""The batched environment as a Stable-Baselines3 ``VecEnv``."""
 
 import time
 from collections.abc import Iterable, Sequence
@@ -16,10 +16,10 @@ VecEnvIndices = None | int | Iterable[int]
 
 
 class BatchVecEnv(VecEnv):
-    """A batch of environments as Stable-Baselines3 sees it.
+    """A batch of environments as a ``VecEnv``.
 
-    Rollouts equal those of a ``DummyVecEnv`` of the same environments with the same seeds bit for bit. It does a
-    monitor's work as well: sums of reward and of every reward term over the episode.
+    Rollouts are bit-identical to those of a ``DummyVecEnv`` of the same environments and seeds. Like ``Monitor``, it
+    sums the reward, and also every reward term, over the episode.
 
     Parameters
     ----------
@@ -33,11 +33,10 @@ class BatchVecEnv(VecEnv):
 
     Notes
     -----
-    The dictionaries of environments in mid-episode are one and the same object: treat them as read-only. That of an
-    environment whose episode ended is its own, with ``terminal_observation``, ``TimeLimit.truncated``, ``is_success``,
-    ``termination_reason`` (the name of the number that the batch gives), ``distance`` and ``episode``: return ``r``,
-    length ``l``, seconds ``t`` since this object was made, ``distance``, and ``reward_<term>``, the sum of each term
-    over the episode.
+    Environments in mid-episode share one info dictionary: treat it as read-only. When an episode ends, its environment
+    gets a separate one with ``terminal_observation``, ``TimeLimit.truncated``, ``is_success``, ``termination_reason``
+    (the name of the batch's code), ``distance`` and ``episode``: return ``r``, length ``l``, seconds ``t`` since this
+    object was created, ``distance``, and ``reward_<term>``, the sum of each term over the episode.
     """
 
     def __init__(self, batch: Any):
@@ -55,7 +54,7 @@ class BatchVecEnv(VecEnv):
         self._started = time.time()
 
     def seed(self, seed: int | Sequence[int] | None = None) -> Sequence[int | None]:
-        """Seed environment i with ``seed + i``, or each with its own of a sequence, at the next reset."""
+        """Seed environment i with ``seed + i``, or with entry i of a sequence, at the next reset."""
         if seed is None or isinstance(seed, (int, np.integer)):
             return super().seed(None if seed is None else int(seed))
         if len(seed) != self.num_envs:
@@ -64,7 +63,7 @@ class BatchVecEnv(VecEnv):
         return self._seeds
 
     def reset(self) -> np.ndarray:
-        """Reset every environment, with the seeds given to ``seed`` if there are any, and return (n, d) float32."""
+        """Reset every environment, with the seeds given to ``seed`` if any, and return observations (n, d) float32."""
         seeds = None if all(s is None for s in self._seeds) else list(self._seeds)
         options = self._options[0]
         if any(other != options for other in self._options):
@@ -79,7 +78,7 @@ class BatchVecEnv(VecEnv):
         return observations
 
     def step_async(self, actions: np.ndarray) -> None:
-        """Keep the actions, of shape (n, 42), for ``step_wait``."""
+        """Store the actions, (n, 42), for ``step_wait``."""
         self._actions = actions
 
     def step_wait(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[dict[str, Any]]]:
@@ -88,7 +87,7 @@ class BatchVecEnv(VecEnv):
         Returns
         -------
         observations
-            (n, d) float32; of an environment whose episode ended, the first one of its next episode.
+            (n, d) float32; after the end of an episode, the first observation of the next.
         rewards
             (n,) float32, as ``DummyVecEnv`` rounds them.
         dones
@@ -127,7 +126,7 @@ class BatchVecEnv(VecEnv):
         }
 
     def get_images(self) -> Sequence[np.ndarray | None]:
-        """Draw every environment, (height, width, 3) uint8 each, or None without a ``render_mode``."""
+        """Render every environment, (height, width, 3) uint8 each, or None without a ``render_mode``."""
         return self.batch.render() or [None] * self.num_envs
 
     def get_state(self) -> dict[str, Any]:
@@ -154,22 +153,22 @@ class BatchVecEnv(VecEnv):
         return [getattr(self.batch, attr_name)] * len(list(self._get_indices(indices)))
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Set the batch's attribute; a part of a batch cannot have its own."""
+        """Set the batch's attribute, which all environments share."""
         if indices is not None:
             raise ValueError(f"indices must be None: the environments of a batch share {attr_name!r}, got {indices}")
         setattr(self.batch, attr_name, value)
 
     def env_method(self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any) -> list[Any]:
-        """Call the batch's method once and return its result, once for each of `indices`."""
+        """Call the batch's method once, and return its result for each of `indices`."""
         return [getattr(self.batch, method_name)(*args, **kwargs)] * len(list(self._get_indices(indices)))
 
     def env_is_wrapped(self, wrapper_class: type[gym.Wrapper], indices: VecEnvIndices = None) -> list[bool]:
-        """Tell whether the environments do the work of `wrapper_class`: of ``Monitor`` alone."""
+        """Return whether the environments act as `wrapper_class`; true only for ``Monitor``."""
         return [wrapper_class is Monitor] * len(list(self._get_indices(indices)))
 
 
 def make_batch_vec_env(env_id: str, *, n_envs: int, n_threads: int = 2, **env_kwargs: Any) -> BatchVecEnv:
-    """Make `n_envs` environments of the registered id, stepped by `n_threads` threads, for Stable-Baselines3."""
+    """Make a batch of `n_envs` environments, stepped by `n_threads` threads, for Stable-Baselines3."""
     batch = gym.make_vec(
         env_id, num_envs=n_envs, autoreset_mode=AutoresetMode.SAME_STEP, n_threads=n_threads, **env_kwargs
     )

@@ -143,7 +143,7 @@ def test_a_run_starts_from_the_networks_of_another(ppo_run, tmp_path):
         *SMALL_PPO,
         status=2,
     )
-    assert "do not fit" in output and FORWARD in output and "not seen here: " in output
+    assert "do not fit" in output and FORWARD in output and "missing here: " in output
 
 
 def test_a_run_starts_from_a_pretrained_policy(tmp_path):

@@ -60,12 +60,12 @@ def test_a_published_policy_acts_as_its_run(trained, published):
     assert card["steps"] == 40 and "--steps 40" in card["command"] and "n_steps=20" in card["command"]
     for where in ("scored_on", "trained_on"):
         assert set(card[where]) == {"cpu", "kernels", "commit"} and "compiled for" in card[where]["cpu"]
-    # without the optimizer's two moments of every weight
+    # saved without the optimiser's moments
     assert (published / "a_snake.zip").stat().st_size < 0.6 * (trained / "model.zip").stat().st_size
     assert sorted(path.name for path in published.iterdir()) == ["a_snake.npz", "a_snake.yml", "a_snake.zip"]
 
 
-def test_a_policy_is_scored_again_and_else_stays_as_it_is(published, tmp_path):
+def test_scoring_a_policy_again_changes_nothing_else(published, tmp_path):
     shutil.copytree(published, tmp_path, dirs_exist_ok=True)
     output = run("agents.publish", "--name", "a_snake", "--episodes", 3, "--seed", 2_000_007, "--out", tmp_path)
     old, new = cards.read_card("a_snake", published), cards.read_card("a_snake", tmp_path)
@@ -76,7 +76,7 @@ def test_a_policy_is_scored_again_and_else_stays_as_it_is(published, tmp_path):
     assert (tmp_path / "a_snake.zip").read_bytes() == (published / "a_snake.zip").read_bytes()
 
 
-def test_the_commands_of_cards_set_what_the_run_had(trained):
+def test_the_commands_of_cards_reproduce_the_run(trained):
     import shlex
 
     _, config = load_run(trained)
@@ -86,7 +86,7 @@ def test_the_commands_of_cards_set_what_the_run_had(trained):
     assert "--imitate" not in words and "--imitate 80" in cards.command_of(config | {"imitate": 80})
 
 
-def test_a_folder_that_would_become_too_large_stays_as_it_was(trained, published, tmp_path, monkeypatch):
+def test_a_folder_that_would_become_too_large_is_left_unchanged(trained, published, tmp_path, monkeypatch):
     shutil.copytree(published, tmp_path, dirs_exist_ok=True)
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
     policy, _ = load_run(trained)
@@ -121,7 +121,7 @@ def test_shipped_policies_have_cards_and_load(name):
     for quantity, mean in (("return", "return_mean"), ("distance", "distance_mean"), ("success", "success_rate")):
         low, high = score["elsewhere95"][quantity]
         assert low <= score[mean] <= high
-    # of the difference of two independent means, 1.4 times that of either
+    # the interval of a difference of two independent means is 1.4 times as wide as that of either
     low, high = score["elsewhere95"]["distance"]
     assert high - low == pytest.approx(2.0 * 2.0**0.5 * score["distance_ci95"], abs=2e-4)
     assert "another CPU" in card["intervals"]
@@ -137,8 +137,8 @@ def test_shipped_policies_are_small():
     assert sum(path.stat().st_size for path in cards.PRETRAINED.iterdir()) < cards.LARGEST
 
 
-def test_shipped_snakes_do_what_their_cards_say():
-    """On episodes that neither training nor the cards' scores have seen."""
+def test_shipped_snakes_match_their_cards():
+    """On episodes used neither in training nor for the cards' scores."""
     forward, card = cards.load_pretrained("snake_forward_ppo")
     result = evaluate(forward, FORWARD, episodes=4, seed=3_000_000)
     assert result.distances.mean() > 0.75 * card["score"]["distance_mean"] > 0.4
@@ -147,7 +147,7 @@ def test_shipped_snakes_do_what_their_cards_say():
     assert evaluate(reach, REACH, episodes=4, seed=3_000_000).successes.sum() >= 3
 
 
-def test_the_wheel_brings_them(tmp_path):
+def test_the_wheel_contains_them(tmp_path):
     pytest.importorskip("setuptools", minversion="77")
     source = tmp_path / "source"
     ignored = shutil.ignore_patterns("__pycache__")

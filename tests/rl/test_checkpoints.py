@@ -28,7 +28,7 @@ def test_the_last_ones_are_kept(tmp_path):
         lambda folder: (folder / checkpoints.CHECKSUMS).write_text("[1]"),
     ],
 )
-def test_a_damaged_one_is_told_and_passed_over(tmp_path, damage):
+def test_a_damaged_checkpoint_is_reported_and_skipped(tmp_path, damage):
     whole, broken = write(tmp_path, 1), write(tmp_path, 2)
     damage(broken)
     told = []
@@ -49,13 +49,13 @@ def test_a_failing_write_leaves_the_previous_one(tmp_path):
     assert checkpoints.find_damage(whole) is None
 
 
-def test_what_a_killed_process_left_is_removed(tmp_path):
+def test_leftovers_of_a_killed_process_are_removed(tmp_path):
     (tmp_path / ".writing-123").mkdir(parents=True)
     whole = write(tmp_path, 1)
     assert os.listdir(tmp_path) == [whole.name]
 
 
-def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
+def test_a_file_is_replaced_atomically(tmp_path):
     path = tmp_path / "model.zip"
     files.write_atomically(path, lambda place: place.write_text("old"))
     with pytest.raises(OSError):

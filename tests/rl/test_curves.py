@@ -1,4 +1,4 @@
-"""Learning curves: what their titles say, and where they begin."""
+"""Learning curves: titles, first values and layout."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from tests.agents.commands import FORWARD
 
 @pytest.fixture
 def run_folder(tmp_path):
-    """Make the folder of a run with a given configuration and tables."""
+    """Create the folder of a run with a given configuration and tables."""
 
     def make(name, tables, **config):
         folder = tmp_path / name
@@ -28,7 +28,7 @@ def run_folder(tmp_path):
     return make
 
 
-def test_titles_say_what_was_done_and_not_what_the_folder_is_called(run_folder):
+def test_titles_come_from_the_configuration_and_not_from_the_folder(run_folder):
     table = {METRICS: [0.0, 1.0]}
     plain = run_folder("ppo-3-20260101", table)
     taught = run_folder("dagger-2", table, imitate=128_000, steps=0, start_from="octopus_fetch_dagger", seed=1000)
@@ -44,7 +44,7 @@ def test_titles_say_what_was_done_and_not_what_the_folder_is_called(run_folder):
     assert curves.plot_runs([plain, again]).get_suptitle() == curves.title_of([plain, again])
 
 
-def test_a_run_that_only_imitated_has_the_curve_of_its_evaluations(run_folder):
+def test_the_curve_of_an_imitation_run_is_that_of_its_evaluations(run_folder):
     run = run_folder("dagger", {EVALUATIONS: [0.2, 0.6, 0.8]}, imitate=100, steps=0)
     assert curves.curve_of(run)["success"].tolist() == [0.2, 0.6, 0.8]
     (line,) = curves.plot_runs([run]).axes[2].get_lines()
@@ -58,13 +58,13 @@ def test_a_curve_does_not_begin_before_episodes_have_ended(run_folder):
     assert not seen[line.get_xdata() < 30.0].any() and seen[line.get_xdata() >= 30.0].all()
 
 
-def test_labels_are_inside_of_the_picture(run_folder):
+def test_labels_are_inside_the_figure(run_folder):
     run = run_folder("run", {METRICS: [0.5, 1.0]}, imitate=128_000, start_from="octopus_fetch_dagger")
     assert_inside(curves.plot_run(run))
 
 
 def assert_inside(figure):
-    """Make sure that no title and no label of a figure is cut off."""
+    """Check that no title or label of a figure is cut off."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     canvas = FigureCanvasAgg(figure)

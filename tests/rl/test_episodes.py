@@ -1,4 +1,4 @@
-"""Means over episodes of a training, against those that a reader would count by hand."""
+"""Means over training episodes, compared with means counted by hand."""
 
 import numpy as np
 from hypothesis import given
@@ -10,7 +10,7 @@ LONGEST = 10
 
 
 def play(episodes, lengths, steps):
-    """Run environments whose episodes have these lengths in turn: those that end before `LONGEST` are successes."""
+    """Run environments with episodes of these lengths in turn; those shorter than `LONGEST` are successes."""
     begun, turns = [0] * len(lengths), [iter(each) for each in lengths]
     current = [next(turn) for turn in turns]
     for step in range(1, steps + 1):
@@ -27,7 +27,7 @@ def play(episodes, lengths, steps):
 
 def test_early_successes_do_not_count_before_the_failures_that_began_with_them():
     episodes = Episodes(longest=LONGEST, window=100)
-    # half of the environments succeed after 2 steps, again and again, and half never do
+    # half of the environments always succeed after 2 steps, the other half never do
     lengths = [[2] * 100] * 5 + [[LONGEST] * 100] * 5
     play(episodes, lengths, LONGEST - 1)
     assert np.isnan(episodes.mean("success"))
@@ -36,14 +36,14 @@ def test_early_successes_do_not_count_before_the_failures_that_began_with_them()
     assert episodes.mean("success") == 0.5 and episodes.mean("l") == 6.0
 
 
-def test_the_rate_is_that_of_episodes_and_not_of_those_that_ended_first():
+def test_the_success_rate_is_not_biased_towards_episodes_that_ended_first():
     rng, rates = np.random.default_rng(0), []
     for _ in range(300):
         lengths = rng.choice([2, LONGEST], size=(8, 40), p=[0.3, 0.7]).tolist()
         episodes = Episodes(longest=LONGEST, window=100)
         play(episodes, lengths, 14)
         rates.append(episodes.mean("success"))
-    # of those that have ended by then, two thirds are successes
+    # of the episodes ended by then, two thirds are successes
     assert abs(np.mean(rates) - 0.3) < 0.05
 
 
@@ -61,7 +61,7 @@ def test_settled_episodes_are_all_that_began_early_enough(lengths, steps):
     assert sorted(told["l"] for told in episodes.settled()) == sorted(wanted)
 
 
-def test_only_the_last_count_and_a_state_goes_on():
+def test_only_the_last_episodes_count_and_a_state_is_restored():
     one, other = (Episodes(longest=LONGEST, window=3) for _ in range(2))
     play(one, [[1, 2, 3, 4, 5, 6] + [10] * 9], 40)
     assert [told["l"] for told in one.settled()] == [5, 6, 10]

@@ -1,4 +1,4 @@
-"""Hindsight experience replay trains on the goal-conditioned ids, through the batch's adapter."""
+"""Hindsight experience replay trains on the goal-conditioned environments through `BatchVecEnv`."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def test_sac_with_hindsight_trains(env_id):
     rewards = sample.rewards.numpy().ravel()
     after = {name: values.numpy() for name, values in sample.next_observations.items()}
     near = env.batch.compute_reward(after["achieved_goal"], after["desired_goal"], {})
-    # what is relabelled is rewarded for the goal that it is given, and without it nothing here would be
+    # relabelled transitions are rewarded for their new goal; without relabelling all rewards would be zero
     np.testing.assert_array_equal(rewards, near)
     assert rewards.mean() > 0.1
     env.close()

@@ -23,7 +23,7 @@ def test_every_environment_has_hyperparameters(algo):
         assert "policy" in hyperparameters.algorithm_arguments(values)
 
 
-def test_overrides_go_before_the_file():
+def test_overrides_take_precedence_over_the_file():
     overrides = hyperparameters.parse_overrides(["gamma=0.9", "learning_rate=lin_0.01", "env_kwargs={duration: 2.0}"])
     values = hyperparameters.load("ppo", FORWARD, overrides=overrides)
     assert values["gamma"] == 0.9
@@ -43,12 +43,12 @@ def test_overrides_go_before_the_file():
         ("dict(activation_fn=nn.Tanh)", {"activation_fn": nn.Tanh}),
     ],
 )
-def test_strings_of_python_are_read_as_rl_zoo3_evaluates_them(text, value):
+def test_strings_of_python_are_parsed_as_rl_zoo3_evaluates_them(text, value):
     assert hyperparameters.literal(text) == value == eval(text)
 
 
 @pytest.mark.parametrize("text", ["__import__('os')", "dict(a=open('x'))", "[x for x in (1,)]", "dict(", "nn.nothing"])
-def test_nothing_else_is_read(text):
+def test_other_expressions_are_refused(text):
     with pytest.raises(BadInputError):
         hyperparameters.literal(text)
 
@@ -61,7 +61,7 @@ def test_normalisation_as_rl_zoo3_reads_it(normalize, wanted):
     assert hyperparameters.normalize_arguments(values) == (wanted if wanted is None else {**wanted, "gamma": 0.5})
 
 
-def test_a_wrong_file_is_told(tmp_path):
+def test_an_invalid_file_is_reported(tmp_path):
     path = tmp_path / "ppo.yml"
     with pytest.raises(BadInputError, match="Cannot read"):
         hyperparameters.load("ppo", FORWARD, config=path)
@@ -80,7 +80,7 @@ def test_lowest_versions_are_those_of_the_package():
     import tomllib
 
     groups = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    # those that are for users, and not for who works on the package
+    # the groups for users, without those for developers
     for extra in set(groups) - {"test", "bench"}:
         assert {f"{package}>={lowest}" for package, lowest in lowest_of(extra).items()} == set(groups[extra])
 
@@ -90,7 +90,7 @@ def test_every_key_has_allowed_values(algo):
     assert set(ALLOWED[algo]) == hyperparameters.valid_keys(algo)
 
 
-def test_numbers_that_yaml_reads_as_texts_are_numbers():
+def test_numbers_that_yaml_reads_as_strings_are_converted():
     overrides = hyperparameters.parse_overrides(["ent_coef=1e-3", "n_timesteps=1e6", "learning_rate=3e-4"])
     values = hyperparameters.load("ppo", FORWARD, overrides=overrides)
     assert (values["ent_coef"], values["n_timesteps"], values["learning_rate"]) == (1e-3, 1_000_000, 3e-4)
@@ -117,7 +117,7 @@ def envs():
 @pytest.mark.parametrize("algo", hyperparameters.ALGORITHMS)
 @given(data=st.data())
 @settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow])
-def test_what_is_not_refused_in_one_line_makes_a_model(envs, algo, data):
+def test_values_are_refused_in_one_line_or_make_a_model(envs, algo, data):
     base = {"policy": "MlpPolicy", "policy_kwargs": {"net_arch": [4]}, "n_envs": 2, "buffer_size": 500, "n_steps": 5}
     names = sorted(hyperparameters.valid_keys(algo) - {"env_kwargs", "rollout_buffer_kwargs", "replay_buffer_kwargs"})
     key = data.draw(st.sampled_from(names))
@@ -135,7 +135,7 @@ def test_what_is_not_refused_in_one_line_makes_a_model(envs, algo, data):
             env=env, seed=0, device="cpu", **hyperparameters.algorithm_arguments(values)
         )
     except (AssertionError, ValueError):
-        # which is what remains for Stable-Baselines3: what values cannot be together
+        # invalid combinations are left to Stable-Baselines3
         assert key in ("policy", "batch_size", "n_steps", "use_sde", "optimize_memory_usage", "normalize_advantage")
         return
     assert model.gamma == values.get("gamma", 0.99)

@@ -1,4 +1,4 @@
-"""A network first learns to do what the scripted policy does, then from rewards."""
+"""A network first imitates the scripted policy, then learns from rewards."""
 
 import numpy as np
 import torch
@@ -16,7 +16,7 @@ NO_STEP = "learning_rate=0.0"
 
 
 def difference_from_script(policy) -> float:
-    """Mean square difference of actions from those of the script, where the script goes."""
+    """Mean square difference of actions from the script's, in states that the script visits."""
     env = make_batch_vec_env(FORWARD, n_envs=2)
     env.seed(50)
     observations, differences = env.reset(), []
@@ -36,7 +36,7 @@ def test_imitation_comes_near_the_script(tmp_path):
     assert taught.normalization.obs_rms.count > 320
 
 
-def test_imitation_of_the_same_task_goes_on_from_what_is_known(tmp_path):
+def test_imitation_of_the_same_task_continues_from_the_trained_networks(tmp_path):
     taught, later = tmp_path / "taught", tmp_path / "later"
     run("agents.train", "--steps", 0, "--imitate", 320, "--folder", taught, *SMALL_PPO)
     run("agents.train", "--steps", 0, "--imitate", 40, "--start-from", taught, "--folder", later, *SMALL_PPO)
@@ -45,7 +45,7 @@ def test_imitation_of_the_same_task_goes_on_from_what_is_known(tmp_path):
     assert difference_from_script(after) < 1.2 * difference_from_script(before)
 
 
-def test_a_run_that_imitates_goes_on_as_if_not_interrupted(tmp_path):
+def test_a_resumed_imitation_run_equals_an_uninterrupted_one(tmp_path):
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     begin = ("agents.train", "--imitate", 80)
     last = 40 * (CRITIC_UPDATES + 2)
@@ -76,18 +76,18 @@ def test_only_ppo_imitates():
     assert "only ppo can imitate" in refused("agents.train", "--algo", "sac", "--imitate", "100")
 
 
-def test_no_steps_leave_what_was_imitated(tmp_path):
+def test_zero_steps_keep_the_imitated_policy(tmp_path):
     output = run("agents.train", "--steps", 0, "--imitate", 160, "--folder", tmp_path, *SMALL_PPO)
     evaluations = read_table(tmp_path / EVALUATIONS)
-    # after the first of the rounds, and in the end
+    # after the first round and at the end
     assert evaluations["steps"].tolist() == [160 / ROUNDS, 160], output
-    # and rewards may be learned from later
+    # learning from rewards may follow later
     run("agents.train", "--resume", tmp_path, "--steps", 40)
     assert load_run(tmp_path)[0].model.num_timesteps == 200
     assert read_table(tmp_path / METRICS)["steps"].tolist() == [200]
 
 
-def test_more_than_a_muscle_can_do_is_no_difference():
+def test_actions_beyond_saturation_are_no_difference():
     actions = torch.tensor([[1.0, -1.0, 1.0, 0.5]])
     assert _difference(torch.tensor([[1.7, -2.0, 1.0, 0.5]]), actions) == 0.0
     torch.testing.assert_close(_difference(torch.tensor([[-2.0, -1.0, 0.0, 1.5]]), actions), torch.tensor(11.0 / 4.0))

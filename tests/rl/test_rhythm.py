@@ -1,4 +1,4 @@
-"""A policy that feels the clocks of the strokes it is to learn."""
+"""A policy that observes the clocks of the strokes it learns."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def rhythms(envs):
     return Rhythms(envs.observation_space, time_left=names.index("time_left"), duration=duration, periods=PERIODS)
 
 
-def test_clocks_go_with_the_time_of_the_episode(envs):
+def test_clocks_follow_the_time_of_the_episode(envs):
     features, n = rhythms(envs), len(envs.batch.observation_names)
     observations = envs.reset()
     for step in range(12):
@@ -37,7 +37,7 @@ def test_clocks_go_with_the_time_of_the_episode(envs):
         observations, *_ = envs.step(np.zeros((2, 42), np.float32))
 
 
-def test_what_is_seen_is_brought_to_scale(envs):
+def test_observations_are_scaled(envs):
     features, n = rhythms(envs), len(envs.batch.observation_names)
     seen = torch.randn(1000, n) * torch.linspace(0.1, 20.0, n) + torch.linspace(-3.0, 3.0, n)
     seen[:, 0] = 0.5
@@ -60,12 +60,12 @@ def test_a_saved_model_keeps_scale_and_clocks(envs, tmp_path):
     np.testing.assert_array_equal(given, wanted)
 
 
-def test_runs_begin_with_the_networks_of_another(tmp_path):
+def test_runs_start_from_the_networks_of_another(tmp_path):
     small = (*SMALL, "--imitate", 80, "--steps", 0, "--config", CONFIGS / "imitation.yml", "--set", SMALL_EPISODES)
     run("agents.train", "--env", RETURN, "--folder", tmp_path / "first", *small)
     run("agents.train", "--env", RETURN, "--folder", tmp_path / "second", *small, "--start-from", tmp_path / "first")
     first, second = (load_run(tmp_path / name)[0] for name in ("first", "second"))
     assert first.normalization is None
     start, end = (policy.model.policy.state_dict()["action_net.weight"] for policy in (first, second))
-    # sixteen thousand weights that begin apart stay apart
+    # differently initialised weights would stay different
     assert torch.nn.functional.cosine_similarity(start.flatten(), end.flatten(), dim=0) > 0.5

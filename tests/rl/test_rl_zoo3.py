@@ -1,4 +1,4 @@
-"""The configuration files train through rl_zoo3 as they are."""
+"""rl_zoo3 trains from the same configuration files."""
 
 import gymnasium
 import pytest
@@ -53,8 +53,8 @@ def test_rl_zoo3_trains_from_the_same_file(tmp_path, algo, env_id, small):
 
 
 @pytest.mark.parametrize("env_id", [FORWARD, "elastica_gym/SnakeSteer-v1", "elastica_gym/OctopusCrawl-v1"])
-def test_rl_zoo3_searches_the_hyperparameters_of_policies_of_ours(env_id):
-    """What it draws replaces all arguments of the policy."""
+def test_rl_zoo3_searches_the_hyperparameters_of_our_policies(env_id):
+    """Its samples replace all arguments of the policy."""
     values = algorithm_arguments(load("ppo", env_id))
     drawn = optuna.create_study().ask()
     HYPERPARAMS_SAMPLER["ppo"](drawn, 42, 1, {})

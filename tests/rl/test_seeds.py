@@ -19,7 +19,7 @@ def test_seeds_do_not_depend_on_how_many_are_drawn():
 
 
 @pytest.mark.parametrize("algo", ["ppo", "sac"])
-def test_environments_of_runs_start_from_generators_of_their_own(algo, tmp_path):
+def test_environments_of_different_runs_have_different_generators(algo, tmp_path):
     starts = []
     for seed in (0, 1):
         arguments = TrainArguments(algo=algo, seed=seed, n_envs=4, steps=1, folder=tmp_path / f"{algo}-{seed}")

@@ -1,4 +1,4 @@
-"""Animals are their own mirror images, and so is what their policies do."""
+"""Animals are mirror-symmetric, and their policies mirror-equivariant."""
 
 import gymnasium
 import numpy as np
@@ -16,7 +16,7 @@ from elastica_gym.rl.symmetry import SymmetricPolicy
 
 IDS = ("elastica_gym/OctopusCrawl-v1", "elastica_gym/SnakeForward-v1")
 TRAINED = (*IDS, "elastica_gym/SnakeSteer-v1")
-"""What is trained with such a policy; the second snake has more to see"""
+"""Environments trained with such a policy; the second snake has more observations"""
 
 
 def mirrored(envs, values, names=None):
@@ -25,7 +25,7 @@ def mirrored(envs, values, names=None):
 
 
 def write_mirror_image(envs):
-    """Make the second environment the mirror image of the first, in a mirror through the head."""
+    """Make the second environment the mirror image of the first, in a mirror plane through the head."""
     s, body = envs.state, envs.body
     first, n = int(body.model.first_slot[0]), int(body.model.n_elements[0])
     nodes, elements = slice(first, first + n + 1), slice(first, first + n)
@@ -37,18 +37,18 @@ def write_mirror_image(envs):
     place = envs.pose.head[0]
     s.x[1, :, nodes] = (P @ (s.x[0, :, nodes] - place[:, None]) + place[:, None])[:, order]
     s.v[1, :, nodes] = (P @ s.v[0, :, nodes])[:, order]
-    # frames stay right-handed: counted from the other end, tangents turn round, and else the binormals
+    # frames stay right-handed: tangents flip if counted from the other end, otherwise binormals
     turned = np.array([1.0, 1.0, -1.0] if is_swapped else [1.0, -1.0, 1.0])
     s.Q[1, :, :, elements] = turned[:, None, None] * np.einsum("ij,kjn->kin", P, s.Q[0, :, :, elements])[:, :, order]
     s.w[1, :, elements] = -turned[:, None] * s.w[0, :, elements][:, order]
     for name in ("radius", "length"):
         getattr(s, name)[1, elements] = getattr(s, name)[0, elements][order]
-    # the object's axis stays its axis, so its normal turns round
+    # the object keeps its axis, so its normal flips
     turned = np.array([-1.0, 1.0, 1.0])
     s.body_x[1], s.body_v[1] = (s.body_x[0] - place) @ P + place, s.body_v[0] @ P
     s.body_Q[1], s.body_w[1] = turned[:, None] * (s.body_Q[0] @ P), -turned * s.body_w[0]
     flat, at = P[::2, ::2], place[::2]
-    # a direction, and before it home or after it the point to go from
+    # a direction, preceded by home or followed by the starting point
     pairs = envs.goal[0].reshape(-1, 2)
     is_direction = np.arange(len(pairs)) == (1 if is_swapped else 0)
     envs.goal[1] = np.where(is_direction[:, None], pairs @ flat, (pairs - at) @ flat + at).ravel()
@@ -56,14 +56,14 @@ def write_mirror_image(envs):
 
 @pytest.mark.parametrize("env_id", IDS)
 @pytest.mark.parametrize("seed", range(3))
-def test_what_happens_in_the_mirror_is_the_mirror_image(env_id, seed):
-    # short steps: friction amplifies rounding, tenfold in a millisecond, and so does contact
+def test_the_dynamics_are_mirror_symmetric(env_id, seed):
+    # short steps: friction and contact amplify rounding tenfold per millisecond
     envs = gymnasium.make_vec(env_id, num_envs=2, control_dt=0.001).unwrapped
     envs.reset(seed=seed)
     write_mirror_image(envs)
     action = np.random.default_rng(seed).uniform(-0.7, 0.7, 42)
-    # rolls are felt at the end of an element, which may be its beginning in the mirror
-    # and the clock of the image may be half a period later than that of its environment
+    # rolls are observed at the end of an element, which may be its beginning in the mirror;
+    # the clock of the image may be half a period later
     names = envs.observation_names
     left_out = ("roll/", "clock/") if envs.body.mirror.arms else ("clock/",)
     chosen = [i for i, name in enumerate(names) if not name.startswith(left_out)]
@@ -73,7 +73,7 @@ def test_what_happens_in_the_mirror_is_the_mirror_image(env_id, seed):
 
 
 @pytest.mark.parametrize(("env_id", "delay"), list(zip(IDS, (0.0, 0.5), strict=True)))
-def test_the_image_of_what_undulates_feels_the_clock_half_a_period_later(env_id, delay):
+def test_the_image_of_an_undulating_body_observes_the_clock_half_a_period_later(env_id, delay):
     envs = gymnasium.make_vec(env_id, num_envs=1).unwrapped
     names = envs.observation_names
     clock = [names.index("clock/sine"), names.index("clock/cosine")]
@@ -84,7 +84,7 @@ def test_the_image_of_what_undulates_feels_the_clock_half_a_period_later(env_id,
 
 
 @pytest.mark.parametrize("env_id", TRAINED)
-def test_twice_mirrored_is_as_before(env_id):
+def test_mirroring_twice_is_the_identity(env_id):
     envs = gymnasium.make_vec(env_id, num_envs=1).unwrapped
     names = envs.observation_names
     values = np.arange(1.0, len(names) + 1.0)
@@ -95,7 +95,7 @@ def test_twice_mirrored_is_as_before(env_id):
 @pytest.mark.parametrize("policy", [SymmetricPolicy, RhythmicPolicy])
 @pytest.mark.parametrize("env_id", TRAINED)
 def test_policies_need_nothing_but_the_spaces(env_id, policy, tmp_path):
-    """So that whoever replaces all of their arguments, as Optuna in rl_zoo3 does, can make one."""
+    """Code that replaces all other arguments, such as Optuna in rl_zoo3, can create one."""
     env = VecNormalize(DummyVecEnv([lambda: Monitor(gymnasium.make(env_id, duration=0.5))]))
     model = PPO(policy, env, n_steps=8, batch_size=8, device="cpu", policy_kwargs=dict(net_arch=[8]))
     model.learn(8)
@@ -112,14 +112,14 @@ def test_policies_need_nothing_but_the_spaces(env_id, policy, tmp_path):
 
 
 @pytest.mark.parametrize("policy", [SymmetricPolicy, RhythmicPolicy])
-def test_spaces_that_do_not_say_what_their_numbers_are_are_refused(policy):
+def test_spaces_without_names_are_refused(policy):
     observations = gymnasium.spaces.Box(-1.0, 1.0, (159,))
     with pytest.raises(ValueError, match=f"{policy.__name__} needs the spaces of an elastica_gym environment, not Box"):
         policy(observations, gymnasium.spaces.Box(-1.0, 1.0, (42,)), lambda _: 1e-3)
 
 
 @pytest.mark.parametrize("env_id", TRAINED)
-def test_the_policy_answers_in_the_mirror_with_the_mirror_image(env_id):
+def test_the_policy_is_mirror_equivariant(env_id):
     envs = gymnasium.make_vec(env_id, num_envs=5).unwrapped
     torch.manual_seed(0)
     policy = SymmetricPolicy(envs.single_observation_space, envs.single_action_space, lambda _: 1e-3, ortho_init=False)

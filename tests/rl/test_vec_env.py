@@ -74,7 +74,7 @@ def test_reward_terms_of_an_episode_sum_to_its_return(env):
             assert np.isfinite(episode["distance"])
 
 
-def test_what_was_returned_does_not_change_later(env):
+def test_returned_arrays_do_not_change_later(env):
     first = env.reset()
     kept = first.copy()
     second, rewards, *_ = env.step(actions(1, 3)[0])
@@ -104,13 +104,13 @@ def test_state_continues_bit_for_bit(env):
             assert mine.get("episode", {}).get("r") == theirs.get("episode", {}).get("r")
 
 
-def test_asks_for_same_step_autoreset():
+def test_same_step_autoreset_is_required():
     batch = gymnasium.make_vec(FORWARD, num_envs=2, autoreset_mode=AutoresetMode.NEXT_STEP)
     with pytest.raises(ValueError, match="SAME_STEP"):
         BatchVecEnv(batch)
 
 
-def test_attributes_are_the_batch_s(env):
+def test_attributes_are_those_of_the_batch(env):
     assert env.get_attr("num_envs") == [3, 3, 3]
     assert env.get_attr("control_dt", indices=0) == [env.batch.control_dt]
     assert env.env_is_wrapped(Monitor, indices=[0, 1]) == [True, True]
@@ -119,12 +119,12 @@ def test_attributes_are_the_batch_s(env):
         env.set_attr("control_dt", 0.1, indices=[0])
 
 
-def test_video_recorder_takes_it(offscreen, tmp_path):
+def test_video_recorder_works(offscreen, tmp_path):
     pytest.importorskip("moviepy")
     native = make_batch_vec_env(FORWARD, n_envs=2, duration=DURATION, render_mode="rgb_array", render_size=(96, 64))
     env = VecVideoRecorder(native, str(tmp_path), record_video_trigger=lambda step: step == 0, video_length=2)
     env.reset()
-    # side by side or one upon the other
+    # tiled horizontally or vertically
     assert env.render().shape[0] * env.render().shape[1] == 2 * 64 * 96
     for action in actions(3, 2):
         env.step(action)

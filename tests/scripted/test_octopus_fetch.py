@@ -1,4 +1,4 @@
-"""The policy file that fetches the object by script, from observations alone."""
+"""The policy file that fetches the object by script, using observations only."""
 
 import gymnasium
 import numpy as np
@@ -17,7 +17,7 @@ FETCH = "elastica_gym/OctopusFetch-v1"
 
 @pytest.fixture
 def make():
-    """Make a batch of octopuses at the default target, and close it in the end."""
+    """Make a batch of octopuses at the default target, and close it at the end."""
     made = []
 
     def batch(env_id=FETCH, **kwargs):
@@ -29,7 +29,7 @@ def make():
         env.close()
 
 
-def test_the_file_does_what_the_script_does(make):
+def test_the_file_acts_like_the_script(make):
     batch = make(spread="default")
     observations, _ = batch.reset(seed=[3, 4])
     policy = FilePolicy(POLICY)
@@ -44,7 +44,7 @@ def test_the_file_does_what_the_script_does(make):
     assert np.ptp(np.array(played), axis=0).max() > 0.5
 
 
-def test_the_file_tells_by_the_goal_whether_it_holds_the_object(make):
+def test_the_file_infers_from_the_goal_whether_the_object_is_grabbed(make):
     batch = make("elastica_gym/OctopusReturn-v1")
     observations, _ = batch.reset(seed=[3, 4])
     assert (batch.situation().progress.grabbed == 1.0).all()
@@ -71,7 +71,7 @@ def test_it_carries_the_object_away_until_it_has_crawled(make):
         np.testing.assert_allclose(octopus_script.see(observations).goal, sign * home, atol=1e-6)
 
 
-def test_what_the_script_sees_is_where_things_are(make):
+def test_the_script_computes_true_positions(make):
     batch = make(spread="arc")
     batch.reset(seed=[3, 4])
     for _ in range(6):
@@ -81,5 +81,5 @@ def test_what_the_script_sees_is_where_things_are(make):
     away = np.hypot(handled.base_x - head[:, 0], handled.base_z - head[:, 2])
     np.testing.assert_allclose(np.hypot(sight.ahead, sight.right), away, atol=1e-5)
     np.testing.assert_allclose(sight.levels, batch.levels, atol=1e-6)
-    # of nodes 83 mm apart, on an arm that bends
+    # tolerance for observed nodes 83 mm apart on a bending arm
     np.testing.assert_allclose(sight.gap, handled.reach, atol=0.05)
