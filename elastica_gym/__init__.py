@@ -6,12 +6,12 @@
     env = gymnasium.make("elastica_gym/SnakeForward-v1")
     envs = gymnasium.make_vec("elastica_gym/SnakeForward-v1", num_envs=64)
 
-With ``render_mode="rgb_array"``, ``env.render()`` draws pictures. `register` adds tasks of your own.
+With ``render_mode="rgb_array"``, ``env.render()`` returns images. `register` adds your own tasks.
 """
 
 from .versions import require_versions
 
-# before what compiles: with another Numba that ends in an error which does not name the cause
+# before the imports that compile: with another Numba they fail with an obscure error
 require_versions()
 
 from .envs import register, register_all  # noqa: E402

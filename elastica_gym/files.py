@@ -16,12 +16,12 @@ def shipped(name: str) -> Path:
 
 
 def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
-    """Let ``write`` write a file under another name in the same folder, and move it to ``path`` when it is on disk.
+    """Write a file under a temporary name in the same folder, sync it to disk, and rename it to ``path``.
 
     Parameters
     ----------
     path : Path
-        In a folder that exists.
+        Output file, in an existing folder.
     write : callable
         Called with the path to write to.
     """
@@ -36,7 +36,7 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def force_to_disk(path: Path) -> None:
-    """Return when a file or a folder is on disk."""
+    """Sync a file or folder to disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

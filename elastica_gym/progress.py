@@ -1,4 +1,4 @@
-"""Progress of what takes longer than a moment: a bar on a terminal, and a few lines in a log."""
+"""Progress of long tasks: a bar on a terminal, or a few lines in a log."""
 
 import math
 import sys
@@ -10,24 +10,24 @@ from typing import Self, TextIO, TypeVar
 from tqdm import tqdm
 
 PARTS = 10
-"""Lines in a log for the whole of a task, besides the first"""
+"""Lines per task in a log, besides the first"""
 LONGEST_SILENCE = 300.0
-"""Time after which a log gets a line though less is done [s]"""
+"""Maximum time between lines in a log [s]"""
 QUIET = 2.0
-"""Time for which nothing but the first line goes into a log [s]"""
+"""Time after the first line without further lines in a log [s]"""
 
 Item = TypeVar("Item")
 
 
 class LogLines:
-    """When a log gets a line: at every tenth of the task, and after five minutes without one."""
+    """Decides when a log gets a line: at every tenth of the task, and after five minutes without one."""
 
     def __init__(self) -> None:
         self._begun = self._last = time.monotonic()
         self._passed = 0
 
     def is_due(self, done: float) -> bool:
-        """Return whether the log gets a line now that the fraction `done` is done."""
+        """Return whether the log gets a line at the fraction `done`."""
         now, part = time.monotonic(), math.floor(done * PARTS + 1e-9)
         if now - self._begun < QUIET or (part <= self._passed and now - self._last < LONGEST_SILENCE):
             return False
@@ -38,15 +38,15 @@ class LogLines:
 class Bar:
     """Progress of one task; a context manager.
 
-    On a terminal it is a bar that disappears when the task is done. Elsewhere it is a line at the beginning, one at
-    every tenth, and none for the tenths of what takes less than two seconds.
+    On a terminal it is a bar that disappears at the end. Elsewhere it is a line at the beginning and one at every
+    tenth, except in the first two seconds.
 
     Parameters
     ----------
     name
-        What is done.
+        Name of the task.
     file
-        Where to, by default standard error.
+        Output stream, by default standard error.
     """
 
     def __init__(self, name: str, *, file: TextIO | None = None):
@@ -69,7 +69,7 @@ class Bar:
             self._bar.close()
 
     def show(self, done: float, numbers: dict[str, float] | None = None) -> None:
-        """Show that the fraction `done` is done, and the latest numbers."""
+        """Show the fraction done and the latest numbers."""
         text = _text(numbers or {})
         if self._bar is not None:
             self._bar.set_postfix_str(text, refresh=False)
@@ -84,7 +84,7 @@ class Bar:
 
 
 def track(items: Sequence[Item], name: str) -> Iterator[Item]:
-    """Yield items, and show how many of them are done."""
+    """Yield items and show progress."""
     with Bar(name) as bar:
         for i, item in enumerate(items):
             yield item

@@ -39,7 +39,7 @@ def test_versions_within_are_silent(numba):
 
 @pytest.mark.parametrize(("name", "version"), [("numba", "0.61.2"), ("numpy", "1.26.4"), ("gymnasium", "1.1.1")])
 def test_older_versions_are_refused_with_what_mends_them(name, version):
-    command = f"not {version}; mend it by: pip install '{name}{RANGES[name]}'"
+    command = f"not {version}; fix it with: pip install '{name}{RANGES[name]}'"
     with pytest.raises(ImportError) as raised:
         versions.require_within(RANGES, {**INSTALLED, name: version})
     assert command in str(raised.value)
@@ -47,7 +47,7 @@ def test_older_versions_are_refused_with_what_mends_them(name, version):
 
 @pytest.mark.parametrize("version", ["0.69", "0.69.0", "0.70.1", "1.0"])
 def test_newer_versions_are_warned_of(version):
-    with pytest.warns(RuntimeWarning, match=f"not {version}; mend it by: pip install 'numba>=0.62,<0.69'"):
+    with pytest.warns(RuntimeWarning, match=f"not {version}; fix it with: pip install 'numba>=0.62,<0.69'"):
         versions.require_within(RANGES, {**INSTALLED, "numba": version})
 
 
@@ -57,5 +57,5 @@ def test_import_checks_versions():
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.stderr.strip().splitlines()[-1] == (
         "ImportError: elastica_gym works with numba<0.69,>=0.62, not 0.61.0; "
-        "mend it by: pip install 'numba<0.69,>=0.62'"
+        "fix it with: pip install 'numba<0.69,>=0.62'"
     )

@@ -1,1 +1,1 @@
-"""What commands say to whoever runs them: bad input in one line."""
+"""Messages of commands to their users: bad input, reported in one line."""

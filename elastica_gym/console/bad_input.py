@@ -1,4 +1,4 @@
-"""Bad input: what a user may get wrong, told in one line that says how to mend it."""
+"""Bad input, reported to the user in one line that says how to fix it."""
 
 import difflib
 import importlib
@@ -14,11 +14,11 @@ from ..versions import lowest_of, parts
 
 
 class BadInputError(Exception):
-    """Something that the user gave cannot be used; the message says what and what would do."""
+    """Invalid input of the user; the message says what is wrong and what is allowed."""
 
 
 def choose(what: str, name: str, valid: Collection[str]) -> str:
-    """Return `name` if it is one of `valid`, otherwise raise ``BadInputError`` naming them, the nearest first."""
+    """Return `name` if it is one of `valid`, otherwise raise ``BadInputError`` listing them, the closest first."""
     if name in valid:
         return name
     near = difflib.get_close_matches(name, valid, n=max(1, len(valid)), cutoff=0.3)
@@ -28,13 +28,13 @@ def choose(what: str, name: str, valid: Collection[str]) -> str:
 
 
 HIGHEST = {"threads": 4096}
-"""Of arguments that must not be more wherever they are taken"""
+"""Upper bounds of arguments, for all commands"""
 
 
 def check_bounds(values: Mapping[str, Any], lowest: Mapping[str, float]) -> None:
-    """Raise ``BadInputError`` for the first of `values` out of its bounds; those that are None are not looked at."""
+    """Raise ``BadInputError`` for the first of `values` out of bounds; None is skipped."""
     for key, bound in lowest.items():
-        # so written, a NaN is refused
+        # this form also rejects NaN
         if (value := values.get(key)) is not None and not value >= bound:
             raise BadInputError(f"{key} must be at least {bound}, got {value}")
         if value is not None and value > (most := HIGHEST.get(key, math.inf)):
@@ -42,7 +42,7 @@ def check_bounds(values: Mapping[str, Any], lowest: Mapping[str, float]) -> None
 
 
 def missing_extra(extra: str) -> str | None:
-    """Return what is missing of the group `extra` and which command installs it, or None if it is complete."""
+    """Return which packages of `extra` are missing and the command that installs them, or None if complete."""
     troubles = []
     for package, lowest in lowest_of(extra).items():
         try:
@@ -56,20 +56,20 @@ def missing_extra(extra: str) -> str | None:
 
 
 def require_extra(extra: str) -> None:
-    """Raise ``BadInputError`` naming the command that installs what is missing of the group `extra`."""
+    """Raise ``BadInputError`` with the command that installs missing packages of `extra`."""
     if message := missing_extra(extra):
         raise BadInputError(message)
 
 
 def choose_environment(env_id: str, *, goals: bool = False) -> str:
-    """Return `env_id` if it is registered with this package's environments, otherwise raise ``BadInputError``.
+    """Return `env_id` if it is an environment of `elastica_gym.register`, otherwise raise ``BadInputError``.
 
     Parameters
     ----------
     env_id
-        Before it may stand ``my_module:``, a module that is imported first, as Gymnasium does.
+        Optionally with a prefix ``my_module:``, a module that is imported first, as in Gymnasium.
     goals
-        Whether it may be one whose observation is a dict with the goal.
+        Whether goal-conditioned environments, whose observation is a dict, are allowed.
     """
     from ..envs import GoalTask, registered_ids, task_of
 
@@ -81,7 +81,7 @@ def choose_environment(env_id: str, *, goals: bool = False) -> str:
             raise BadInputError(f"Cannot import the module {module!r} of {env_id!r}: {error}") from error
     if not goals and name in registered_ids() and isinstance(task_of(name), GoalTask):
         raise BadInputError(
-            f"{name} has observations that are a dict with the goal, which this command does not take: train on it by "
+            f"{name} has dict observations with a goal, which this command does not support: train on it with "
             "hindsight experience replay, as the docstring of elastica_gym.envs.goal shows"
         )
     choose("environment", name, registered_ids() if goals else environment_ids())
@@ -89,14 +89,14 @@ def choose_environment(env_id: str, *, goals: bool = False) -> str:
 
 
 def environment_ids() -> list[str]:
-    """Return the ids that agents are trained on here: those whose observation is one vector."""
+    """Return the ids of environments whose observation is a vector, which the commands can train on."""
     from ..envs import GoalTask, registered_ids, task_of
 
     return [env_id for env_id in registered_ids() if not isinstance(task_of(env_id), GoalTask)]
 
 
 def make_folder(folder: Path) -> Path:
-    """Create `folder` if need be and make sure that files can be written into it."""
+    """Create `folder` if necessary and check that it is writable."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         probe = folder / f".probe-{os.getpid()}"
@@ -108,7 +108,7 @@ def make_folder(folder: Path) -> Path:
 
 
 def fail(message: str, *, status: int = 2) -> NoReturn:
-    """Print `message` to standard error and leave with `status`."""
+    """Print `message` to standard error and exit with `status`."""
     print(f"error: {message}", file=sys.stderr)
     raise SystemExit(status)
 
@@ -116,7 +116,7 @@ def fail(message: str, *, status: int = 2) -> NoReturn:
 def run_command(command: Callable[[], None]) -> None:
     """Run a command-line program.
 
-    Bad input, failing disks and too little memory become one line and a status that is not 0.
+    Bad input, I/O errors and lack of memory end in one line and a non-zero status.
     """
     try:
         command()

@@ -1,4 +1,4 @@
-"""The 2020 hackathon: its environment, and the scorer, which runs policies in a process of their own."""
+"""The 2020 hackathon: its environment, and the scorer, which runs policies in a separate process."""
 
 from .environment import Environment
 

@@ -1,7 +1,7 @@
-"""The interface of the 2020 hackathon's starter kit: an octopus, an object, and 40 microseconds a step.
+"""The interface of the 2020 hackathon's starter kit: an octopus, an object, and 40 microseconds per step.
 
-A main loop that was written for it runs as it is; what it steps is the octopus of the environments, with muscles that
-follow with a time constant of 0.06 s. To learn, use the environments: they take 0.05 s a step, and many animals.
+Main loops written for it run unchanged, but on the octopus of the environments, whose muscles follow with a time
+constant of 0.06 s. For learning, use the environments: they are batched, with 0.05 s per step.
 """
 
 from collections.abc import Sequence
@@ -22,15 +22,15 @@ from ..engine.rod import require_positive
 TIME_STEP = 4e-5
 """[s]"""
 HEAD = (0.0, 0.5)
-"""Where the head's centre is at the start, (x, z) [m]: the published object stands at [-0.4, 0, 0.5]"""
+"""Initial position of the head's centre, (x, z) [m]; the published object stands at [-0.4, 0, 0.5]"""
 CLEAR = 0.02
-"""Least distance between the surfaces of animal and object at the start [m]"""
+"""Minimum initial distance between the surfaces of animal and object [m]"""
 FRAMES_PER_SECOND = 20
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ShearableRod:
-    """The octopus as it is now. Nodes 0-49 are one arm, 50-70 the head, 71-120 the other arm. Not to be changed.
+    """The current octopus, read-only. Nodes 0-49 are one arm, 50-70 the head, 71-120 the other arm.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class ShearableRod:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RigidBody:
-    """The object, a cylinder, as it is now. Not to be changed.
+    """The current object, a cylinder, read-only.
 
     Attributes
     ----------
@@ -87,11 +87,11 @@ class Environment:
     Parameters
     ----------
     final_time : float
-        Simulated time that ``total_steps`` make [s].
+        Simulated time of ``total_steps`` [s].
     target_position : ArrayLike
-        Where the base of the object stands [m], (3,); y is up and 0 there.
+        Position of the object's base [m], (3,), with y = 0; y is up.
     COLLECT_DATA_FOR_POSTPROCESSING : bool
-        Whether to keep what `post_processing` shows.
+        Whether to collect data for `post_processing`.
 
     Attributes
     ----------
@@ -119,7 +119,7 @@ class Environment:
         self.target_position = np.array(target_position, dtype=np.float64)
         place = self.target_position
         if place.shape != (3,) or place[1] != 0.0 or not np.isfinite(place).all():
-            raise ValueError(f"target_position must be a place (x, 0, z) on the ground, not {target_position!r}")
+            raise ValueError(f"target_position must be a point (x, 0, z) on the ground, not {target_position!r}")
         self.time_step = TIME_STEP
         self.total_steps = max(1, round(final_time / TIME_STEP))
         self._keeps = COLLECT_DATA_FOR_POSTPROCESSING
@@ -129,12 +129,12 @@ class Environment:
         self._started = False
 
     def reset(self) -> tuple[int, list[Any]]:
-        """Put animal and object where they start, at rest; return the number of steps and ``[octopus, object]``.
+        """Place animal and object at rest; return the number of steps and ``[octopus, object]``.
 
         Raises
         ------
         ValueError
-            If the object would stand in the animal.
+            If the object would intersect the animal.
         """
         body = self._body
         self._state, self._control = at_rest(body.model, body.rods, cylinders=body.cylinders)
@@ -148,7 +148,7 @@ class Environment:
         gaps = np.linalg.norm(middles - self.target_position[[0, 2], None], axis=0) - self._state.radius[0, elements]
         if gaps.min() - body.cylinders[0].radius < CLEAR:
             raise ValueError(f"target_position {self.target_position} is in the animal or within {CLEAR} m of it")
-        # pairs that may touch are listed anew, since all has moved
+        # rebuild the neighbour lists, since everything has moved
         self._state.n_neighbours[:] = -1
         self._activations = np.zeros((len(DIRECTIONS), len(self._body.muscles.arms), N_FUNCTIONS))
         self._moments, self._steps, self._started = [], 0, True
@@ -163,14 +163,14 @@ class Environment:
         ----------
         activation_array_list : sequence
             ``[[normal_1, normal_2], [binormal_1, binormal_2], [tangent_1, tangent_2]]``: seven activations in
-            [-1, 1] of each direction and arm, the top level first, and within a level from the head to the tip.
+            [-1, 1] per direction and arm, top level first, and within a level from head to tip.
         time : float
             Simulated time before the step [s].
 
         Returns
         -------
         tuple
-            Time after it [s], ``[octopus, object]``, and whether the simulation has diverged.
+            Time after the step [s], ``[octopus, object]``, and whether the simulation has diverged.
         """
         if not self._started:
             raise RuntimeError("call reset before step")
@@ -179,12 +179,12 @@ class Environment:
         self._steps += 1
         if self._steps % round(1.0 / (FRAMES_PER_SECOND * TIME_STEP)) == 0:
             self._keep()
-        # false for what is not a number, too
+        # also false for NaN
         is_sound = float(np.abs(self._state.v).max()) < self._body.sensors.fastest
         return time + TIME_STEP, self._systems, not is_sound
 
     def post_processing(self, filename_video: str | Path) -> Path:
-        """Write a video of what has happened since `reset`, which needs ``pip install 'elastica-gym[viz]'``.
+        """Write a video of the time since `reset`; requires ``pip install 'elastica-gym[viz]'``.
 
         Raises
         ------
@@ -193,15 +193,14 @@ class Environment:
         """
         if not self._moments:
             raise RuntimeError(
-                "there is nothing to show: make the Environment with "
-                "COLLECT_DATA_FOR_POSTPROCESSING=True, and call reset"
+                "no data to show: create the Environment with COLLECT_DATA_FOR_POSTPROCESSING=True, and call reset"
             )
         from ..viz import render_frames, write_video
 
         return write_video(render_frames(self.rollout()), filename_video, fps=FRAMES_PER_SECOND)
 
     def rollout(self) -> Any:
-        """Return what has been collected, as a `elastica_gym.viz.Rollout` with 20 moments a second."""
+        """Return the collected data as an `elastica_gym.viz.Rollout` with 20 frames per second."""
         from ..viz import Rollout
 
         body = self._body
@@ -225,14 +224,14 @@ class Environment:
         )
 
     def _activate(self, given: Sequence[Sequence[ArrayLike]]) -> None:
-        """Let the muscles follow activations, clipped to [-1, 1]."""
+        """Command muscle activations, clipped to [-1, 1]."""
         try:
             activations = np.array(given, dtype=np.float64)
         except ValueError:
             activations = np.empty(0)
         if activations.shape != self._activations.shape or np.isnan(activations).any():
             raise ValueError("activation_array_list must be [[n1, n2], [b1, b2], [t1, t2]] with seven numbers each")
-        # as a rule they are those of the step before
+        # usually unchanged since the last step
         if (activations != self._activations).any():
             self._activations = activations
             levels = np.clip(activations, -1.0, 1.0).ravel()

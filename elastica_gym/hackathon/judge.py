@@ -1,4 +1,4 @@
-"""The judge: runs a policy on the default target, on the arc and anywhere, and counts the points."""
+"""The judge: runs a policy on targets at the default position, on the arc and anywhere, and counts the points."""
 
 from pathlib import Path
 from types import TracebackType
@@ -14,11 +14,11 @@ from .scoring import GENERAL, GOALS, POINTS, Mask, goals_held, score
 from .trials import Sampler, run_trials
 
 INITIAL_STATES = 5
-"""Episodes on the default target"""
+"""Number of episodes on the default target"""
 MOST_TARGETS = 1000
-"""Targets that are tried side by side"""
+"""Maximum number of targets, which run in parallel"""
 KINDS = ("default", "arc", "anywhere")
-"""Kinds of targets, which environments call their ``spread``"""
+"""Kinds of targets, called ``spread`` in environments"""
 
 
 def judge(
@@ -31,7 +31,7 @@ def judge(
     n_threads: int = 2,
     **env_kwargs: Any,
 ) -> dict[str, Any]:
-    """Return what a policy scores, ready for JSON.
+    """Return the score of a policy; JSON-serialisable.
 
     Parameters
     ----------
@@ -40,21 +40,21 @@ def judge(
     env_id
         Id of an environment with an animal and its object.
     targets
-        How many targets on the arc, and again anywhere.
+        Number of targets on the arc, and the same number anywhere.
     target_seed
-        Seed of all of them.
+        Seed of all targets.
     record
         Folder for rerun recordings of the first episode on each kind of target.
     n_threads
-        Threads that step the physics.
+        Threads for the physics.
     **env_kwargs
         Other arguments of the environment.
 
     Returns
     -------
     dict
-        ``total``, the points of each goal by its name, ``held`` (how many episodes hold each goal, by kind of
-        target), ``error`` (empty, or why the policy has failed, which is then worth nothing), and what was asked.
+        ``total``, the points of each goal by name, ``held`` (number of episodes that achieve each goal, by kind of
+        target), ``error`` (empty, or why the policy failed, which then scores nothing), and the arguments.
     """
     _check(env_id, targets, target_seed, n_threads, record)
     held: dict[str, Mask] = {}
@@ -87,7 +87,7 @@ def judge(
 
 
 def print_score(result: dict[str, Any]) -> None:
-    """Print the points of each goal, and how many episodes hold it, and those before it."""
+    """Print the points of each goal, and the number of episodes that achieve it and all goals before it."""
     from rich.console import Console
     from rich.table import Table
 
@@ -121,7 +121,7 @@ def _check(env_id: str, targets: int, target_seed: int, n_threads: int, record: 
 
 
 class _Watch:
-    """Shows how far the trials are, and records the first episode if asked to."""
+    """Shows progress, and optionally records the first episode."""
 
     def __init__(self, name: str, path: Path | None):
         self._path = path

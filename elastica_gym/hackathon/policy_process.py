@@ -1,7 +1,7 @@
-"""A policy in a process of its own, which gets observations and gives actions, as arrays, and nothing else.
+"""A policy in a separate process that only receives observations and returns actions.
 
-What passes between the two are arrays in NumPy's file format, without pickled objects. A one-dimensional array begins
-as many episodes as it has numbers, and is answered by itself; observations (n, d) are answered by actions (n, 42).
+Messages are arrays in NumPy's file format, without pickled objects. A one-dimensional array of n numbers begins n
+episodes and is echoed; observations (n, d) are answered with actions (n, 42).
 """
 
 import io
@@ -19,27 +19,27 @@ from ..console.bad_input import BadInputError
 from ..rl.policy_file import FilePolicy
 
 LOADING_TIME = 180.0
-"""How long a policy may take to load and to begin episodes [s]"""
+"""Time limit for loading a policy and beginning episodes [s]"""
 ACTING_TIME = 60.0
-"""How long it may take for the actions of one control step of all episodes [s]"""
+"""Time limit for the actions of one control step of all episodes [s]"""
 LONGEST_ANSWER = 1 << 26
-"""Most bytes that are read of an answer"""
+"""Maximum size of a response [bytes]"""
 
 
 class PolicyError(Exception):
-    """The policy has crashed, is too slow, or does not return actions; the message says which."""
+    """The policy crashed, was too slow, or did not return actions; the message says which."""
 
 
 class PolicyProcess:
-    """Runs a policy in a process of its own; a context manager.
+    """Runs a policy in a separate process; a context manager.
 
     Parameters
     ----------
     path
-        A Python file, see `FilePolicy`; the folder of a run; the ``model.zip`` in it; or the zip of
-        a pretrained policy, beside its card.
+        A Python file, see `FilePolicy`; the folder of a run; its ``model.zip``; or the zip of a pretrained policy,
+        next to its card.
     loading_time, acting_time
-        How long the policy may take [s].
+        Time limits of the policy [s].
     """
 
     def __init__(self, path: Path, *, loading_time: float = LOADING_TIME, acting_time: float = ACTING_TIME):
@@ -63,16 +63,16 @@ class PolicyProcess:
         self._process.join()
 
     def begin(self, n: int) -> None:
-        """Begin n episodes side by side."""
+        """Begin n parallel episodes."""
         self._ask(np.zeros(n), self._loading_time, "to load")
 
     def __call__(self, observations: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-        """Return the actions for observations (n, d), which must have a given shape.
+        """Return the actions, of a given shape, for observations (n, d).
 
         Raises
         ------
         PolicyError
-            If the policy has crashed, is too slow, or returns something else than finite numbers of that shape.
+            If the policy crashes, is too slow, or returns anything but finite numbers of that shape.
         """
         actions = self._ask(observations, self._acting_time, "for its actions")
         if actions.shape != shape:
@@ -88,17 +88,17 @@ class PolicyProcess:
                 raise PolicyError(f"the policy took more than {patience:g} s {what}")
             return _from_bytes(self._pipe.recv_bytes(LONGEST_ANSWER))
         except ValueError as error:
-            raise PolicyError(f"the policy's process returned something that is no array: {error}") from None
+            raise PolicyError(f"the policy's process did not return an array: {error}") from None
         except (EOFError, OSError) as error:
             self._process.join(5.0)
             if self._process.is_alive():
-                raise PolicyError(f"the policy's process does not answer: {error}") from None
+                raise PolicyError(f"the policy's process does not respond: {error}") from None
         raise PolicyError(f"the policy's process has ended (status {self._process.exitcode}); see above for why")
 
 
 def _serve(pipe: Connection, path: Path) -> None:
-    """Answer until the pipe is closed."""
-    # Ctrl-C is for who started it
+    """Respond to messages until the pipe is closed."""
+    # the parent process handles Ctrl-C
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         policy = _load(path)
@@ -120,7 +120,7 @@ def _serve(pipe: Connection, path: Path) -> None:
 def _load(path: Path) -> Any:
     if path.suffix == ".py":
         return FilePolicy(path)
-    # a second and more to import, which files do not need
+    # slow to import, and not needed for Python files
     from ..rl.cards import load_pretrained
     from ..rl.policies import load_run
 

@@ -1,4 +1,4 @@
-"""The hackathon's goals, judged from where animal and object have been: pure functions over samples of the State.
+"""The hackathon's goals: pure functions of samples of the State.
 
 | goal | points | holds when |
 |---|---|---|
@@ -10,10 +10,10 @@
 within 0.1 m of its start and the object's base within 0.3 m of the head |
 | general | 50 | 25 times the fraction of targets on the arc, and 25 times that anywhere, on which all others hold |
 
-Distances are in the plane, and between centres but for ``reach``. The object's motion adds up, as vectors, from each
-sample to the next where both count: to and fro is nothing. A grab is as long as from its first sample to its last,
-without a break; an arm that keeps the object may lapse for 0.2 s, from the last good sample to the last bad one. What
-touches, and the angle that an arm spans, is what `elastica_gym.bodies.grip` says.
+Distances are in the plane, and between centres except for ``reach``. Displacements of the object add up as vectors
+over pairs of consecutive samples that both count, so moving to and fro cancels. A grab lasts from its first to its last
+sample, without a break; an arm that keeps the object may lapse for 0.2 s, from the last good sample to the last bad
+one. Touch and the angle that an arm spans are defined in `elastica_gym.bodies.grip`.
 """
 
 from collections.abc import Mapping
@@ -26,39 +26,39 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 CRAWL_HEAD, CRAWL_CENTRE = 0.2, 0.1
-"""How far head and centre of mass have to come [m]"""
+"""Minimum displacement of head and centre of mass [m]"""
 REACH = 0.05
-"""Gap between the surfaces of head and object [m]"""
+"""Maximum gap between the surfaces of head and object [m]"""
 MOVE, UPRIGHT = 0.1, np.radians(45.0)
-"""How far the object has to be moved [m], and its tilt while it is [rad]"""
+"""Minimum displacement of the object [m], and its maximum tilt while it counts [rad]"""
 GRAB, GRAB_COUNT, GRAB_TIME = np.radians(200.0), 5, 0.5
-"""Angle [rad], number of elements and time [s] for which an arm has to hold the object"""
+"""Minimum angle [rad], number of elements and time [s] of a grab"""
 HOLD, LAPSE = np.radians(150.0), 0.2
-"""Angle that a holding arm keeps [rad], but for lapses of so long [s]"""
+"""Minimum angle of a holding arm [rad], and the longest lapse [s]"""
 HOME, BESIDE = 0.1, 0.3
-"""Distance of the head from its start, and of the object from the head [m]"""
+"""Maximum distance of the head from its start, and of the object from the head [m]"""
 ROUNDING = 1e-9
-"""What times and angles may lose to rounding [s, rad]"""
+"""Tolerance of times and angles for rounding [s, rad]"""
 
 POINTS = {"crawl": 5.0, "reach": 7.5, "move": 7.5, "grab": 10.0, "return": 20.0}
 GOALS = tuple(POINTS)
 GENERAL = 25.0
-"""Points for all targets on the arc, and again anywhere"""
+"""Points for all targets on the arc, and the same for all targets anywhere"""
 
 
 class Samples(NamedTuple):
-    """B episodes at T moments, the first of which is their start; places in the plane are (x, z)."""
+    """B episodes at T times, starting with their initial states; positions in the plane are (x, z)."""
 
     time: Array
     """Simulated time [s], (T,)"""
     counted: Mask
-    """Whether the episode was still going on, (T, B) bool"""
+    """Whether the episode was still running, (T, B) bool"""
     head: Array
     """The head's centre in the plane [m], (T, B, 2)"""
     centre: Array
     """The body's centre of mass in the plane [m], (T, B, 2)"""
     head_gap: Array
-    """Least distance between the surfaces of head and object [m], (T, B)"""
+    """Minimum distance between the surfaces of head and object [m], (T, B)"""
     touched: Mask
     """Whether the body touches the object, (T, B) bool"""
     base: Array
@@ -68,21 +68,21 @@ class Samples(NamedTuple):
     spans: Array
     """Angle that each arm spans around the object [rad], (T, B, 2)"""
     counts: NDArray[np.int64]
-    """How many elements of each arm touch it, (T, B, 2)"""
+    """Number of elements of each arm that touch the object, (T, B, 2)"""
 
 
 def crawled(s: Samples) -> Mask:
-    """Return whether by each moment the animal has crawled, (T, B) bool."""
+    """Return whether the animal has crawled by each sample, (T, B) bool."""
     return _held_by(s, (_apart(s.head, s.head[0]) >= CRAWL_HEAD) & (_apart(s.centre, s.centre[0]) >= CRAWL_CENTRE))
 
 
 def reached(s: Samples) -> Mask:
-    """Return whether by each moment the head has been at the object, (T, B) bool."""
+    """Return whether the head has reached the object by each sample, (T, B) bool."""
     return _held_by(s, s.head_gap <= REACH)
 
 
 def moved(s: Samples) -> Mask:
-    """Return whether by each moment the animal has moved the object, (T, B) bool."""
+    """Return whether the animal has moved the object by each sample, (T, B) bool."""
     pushed = s.counted & s.touched & (s.tilt <= UPRIGHT)
     steps = np.where((pushed[1:] & pushed[:-1])[..., None], np.diff(s.base, axis=0), 0.0)
     way = np.concatenate([np.zeros_like(s.base[:1]), np.cumsum(steps, axis=0)])
@@ -90,19 +90,19 @@ def moved(s: Samples) -> Mask:
 
 
 def grabbed(s: Samples) -> Mask:
-    """Return whether by each moment an arm has grabbed the object, (T, B) bool."""
+    """Return whether an arm has grabbed the object by each sample, (T, B) bool."""
     return _held_by(s, np.logical_or.reduce(_grabbing(s), axis=2))
 
 
 def returned(s: Samples) -> Mask:
-    """Return whether by each moment the animal has come home with the object, (T, B) bool."""
+    """Return whether the animal has returned home with the object by each sample, (T, B) bool."""
     before = crawled(s) & reached(s) & moved(s)
     home = (_apart(s.head, s.head[0]) <= HOME) & (_apart(s.base, s.head) <= BESIDE)
     return _held_by(s, before & home & np.logical_or.reduce(_holding(s) & _spans(s, HOLD), axis=2))
 
 
 def goals_held(s: Samples) -> Mask:
-    """Return whether each goal holds by the end of each episode, and those before it, (5, B) bool."""
+    """Return whether each goal and all goals before it are achieved by the end of each episode, (5, B) bool."""
     each = [goal(s)[-1] for goal in (crawled, reached, moved, grabbed, returned)]
     return np.logical_and.accumulate(np.array(each))
 
@@ -120,7 +120,7 @@ def _spans(s: Samples, angle: float) -> Mask:
 
 
 def _grabbing(s: Samples) -> Mask:
-    """Return whether each arm has held as much of the object as a grab needs, for as long, (T, B, 2) bool."""
+    """Return whether each arm has met the angle, count and time of a grab, (T, B, 2) bool."""
     now = _spans(s, GRAB) & (s.counts >= GRAB_COUNT)
     begin = _last(~now) + 1
     since = s.time[np.minimum(begin, len(s.time) - 1)]
@@ -128,14 +128,14 @@ def _grabbing(s: Samples) -> Mask:
 
 
 def _holding(s: Samples) -> Mask:
-    """Return whether each arm has grabbed the object and not lost it since, (T, B, 2) bool."""
+    """Return whether each arm has grabbed the object and kept it since, (T, B, 2) bool."""
     last = _last(_spans(s, HOLD))
     is_lost = (last < 0) | (s.time[:, None, None] - s.time[np.maximum(last, 0)] > LAPSE + ROUNDING)
     return _last(_grabbing(s)) > _last(is_lost)
 
 
 def _last(true: Mask) -> NDArray[np.int64]:
-    """Return the last moment up to each at which it is true, -1 if none, of the shape of the mask."""
+    """Return the index of the last true sample up to each sample, -1 if none, with the shape of the mask."""
     moments = np.arange(len(true)).reshape(-1, *[1] * (true.ndim - 1))
     return np.maximum.accumulate(np.where(true, moments, -1), axis=0)
 
@@ -146,7 +146,7 @@ def score(held: Mapping[str, Mask]) -> dict[str, Any]:
     Parameters
     ----------
     held : dict of str to Mask
-        What `goals_held` returns for the ``default`` target, where each goal has to hold in all episodes, and for
+        Results of `goals_held` for the ``default`` target, where each goal has to be achieved in all episodes, and for
         targets on the ``arc`` and ``anywhere``.
     """
     solid = np.logical_and.reduce(held["default"], axis=1)

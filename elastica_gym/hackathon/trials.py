@@ -1,4 +1,4 @@
-"""Trials: a policy on many targets at once, with the State sampled every 10 ms or finer."""
+"""Trials: a policy on many parallel targets, with the State sampled every 10 ms or finer."""
 
 import itertools
 import math
@@ -19,20 +19,19 @@ from ..engine.threads import Team
 from .scoring import Samples, goals_held
 
 SAMPLE_TIME = 0.01
-"""Most time from one sample to the next [s]"""
+"""Maximum time between samples [s]"""
 STEPS_BETWEEN_LOOKS = 20
-"""Control steps after which it is seen whether there is anything left to do"""
+"""Control steps between checks for episodes that achieved all goals"""
 
 Actor = Callable[[np.ndarray, tuple[int, ...]], np.ndarray]
-"""Observations (n, d) and the shape of the actions in, actions out"""
+"""Function from observations (n, d) and the shape of the actions to actions"""
 
 
 class Sampler:
-    """Samples of a batch of environments, within their control steps too.
+    """Samples of a batch of environments, also within control steps.
 
-    The batch itself runs as always, to the bit. What happens within a control step is told from a copy of its state
-    that runs through the same step in parts, and starts from the batch again at the next. Episodes that are over are
-    not copied.
+    The batch itself runs unchanged, bit for bit. Samples within a control step come from a copy of its state, which
+    runs the same step in parts and is copied again before the next. Finished episodes are not copied.
 
     Parameters
     ----------
@@ -47,7 +46,7 @@ class Sampler:
         self._team = Team(model, self._copy, self._control, batch.n_threads)
         n_parts = math.ceil(batch.n_substeps / math.floor(SAMPLE_TIME / batch.sim_dt + 1e-9))
         cuts = [batch.n_substeps * part // n_parts for part in range(n_parts + 1)]
-        # the end of the control step is the batch's own
+        # the end of the control step is sampled from the batch itself
         self._parts = [end - begin for begin, end in itertools.pairwise(cuts)][:-1]
         self.is_over = np.zeros(n, dtype=bool)
         self._times: list[float] = []
@@ -55,11 +54,11 @@ class Sampler:
         self._look(batch.state, np.arange(n))
 
     def before(self, actions: np.ndarray) -> None:
-        """Take the samples within a control step, before the batch does it."""
+        """Take the samples within a control step, before the batch executes it."""
         batch, going = self._batch, np.flatnonzero(~self.is_over)
         for copied, field in zip((*self._copy, *self._control), (*batch.state, *batch.control), strict=True):
             copied[: going.size] = field[going]
-        # as the batch does it
+        # same as in the batch
         levels = np.clip(np.asarray(actions, dtype=np.float64), -1.0, 1.0)
         activate(batch.body.couples, levels[going], self._control.couple[: going.size])
         for n_substeps in self._parts:
@@ -67,7 +66,7 @@ class Sampler:
             self._look(self._copy, going)
 
     def after(self) -> None:
-        """Take the sample at the end of a control step, but first see which episodes have failed."""
+        """Find failed episodes, then take the sample at the end of a control step."""
         going = np.flatnonzero(~self.is_over)
         situation = self._batch.situation()
         self.is_over |= situation.pose.sound == 0
@@ -76,11 +75,11 @@ class Sampler:
         self._look(State._make(field[going] for field in self._batch.state), going)
 
     def samples(self) -> Samples:
-        """Return all that has been seen."""
+        """Return all samples."""
         return Samples(np.array(self._times), *(np.array(series) for series in zip(*self._moments, strict=True)))
 
     def _look(self, state: State, going: np.ndarray) -> None:
-        """Sample the first states, which are those of the environments that go on."""
+        """Sample the first states, which are those of the running environments."""
         n, plane, body = going.size, [0, 2], self._batch.body
         x, mass = state.x[:n, plane], body.model.mass
         hold = grip(body, State._make(field[:n] for field in state))
@@ -98,7 +97,7 @@ class Sampler:
         self._times.append(float(state.time[:n].max()))
         if self._moments:
             new, seen = seen, tuple(map(np.copy, self._moments[-1]))
-            # of those that are over, what has been seen last stays, and does not count
+            # finished episodes keep their last sample, which does not count
             seen[0][:] = False
             for kept, fresh in zip(seen, new, strict=True):
                 kept[going] = fresh
@@ -113,10 +112,9 @@ def run_trials(
     watch: Callable[[Any, Sampler, dict[str, Any] | None], None],
     **env_kwargs: Any,
 ) -> Samples:
-    """Run an episode for each seed, side by side, and return their samples.
+    """Run one episode per seed, in parallel, and return their samples.
 
-    They go on to their time limit, even where the task would end them with success, but for those that have failed or
-    in which all goals hold.
+    Episodes end on failure, when all goals are achieved, or at the time limit, but not on the task's success.
 
     Parameters
     ----------
@@ -127,7 +125,7 @@ def run_trials(
     seeds
         Seed of each episode.
     watch
-        Called with the batch, the sampler, and the info of the step or None, at the start and after each control step.
+        Called at the start and after each control step with batch, sampler and the info of the step, None at the start.
     **env_kwargs
         Arguments of the environment.
     """

@@ -1,4 +1,4 @@
-"""Policies written by hand: gaits, and a script for each task, found by the task's name."""
+"""Hand-written policies: gaits, and a script for each task, looked up by the task's name."""
 
 from .scripts import Script, register_script, scripted_policy
 

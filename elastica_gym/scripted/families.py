@@ -1,4 +1,4 @@
-"""Gaits that a few numbers describe, to be searched and played: waves for the snake, strokes for the octopus."""
+"""Families of gaits with a few parameters, for search: waves for the snake, strokes for the octopus."""
 
 import dataclasses
 from collections.abc import Callable, Sequence
@@ -23,12 +23,12 @@ from .gaits import (
 )
 
 Play = Callable[[Any, np.ndarray], np.ndarray]
-"""From a batch and its observations, (B, d), the actions, (B, 42)"""
+"""Function from a batch and its observations (B, d) to actions (B, 42)"""
 
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
-    """A number that a search varies: where it starts, how far it looks at first, and between which bounds."""
+    """A parameter of a search: initial mean, initial standard deviation, and bounds."""
 
     name: str
     start: float
@@ -45,15 +45,15 @@ class Gait:
     ----------
     name : str
     body : str
-        The animal that has it.
+        Name of the animal.
     parameters : tuple of Parameter
     prepare : callable
-        From a body and the values of the parameters of K gaits, (K, P), what plays them; the first of K equal parts of
-        the batch plays the first.
+        From a body and the parameters of K gaits, (K, P), a function that plays them; gait k plays in the k-th of K
+        equal parts of the batch.
     objective : str
-        What a search makes large: distance, or return, the sum of the task's own rewards.
+        What a search maximises: distance, or return, the sum of the task's rewards.
     starts : int
-        On how many starts a search tries each candidate.
+        Number of initial states on which a search evaluates each candidate.
     """
 
     name: str
@@ -65,14 +65,14 @@ class Gait:
 
 
 class GaitPolicy:
-    """Gaits, played through the animal's muscles.
+    """A policy that plays gaits of one family.
 
     Parameters
     ----------
     gait
-        Their family.
+        The family.
     values
-        Values of its parameters, (P,) for all environments, or (K, P) for K equal parts of the batch.
+        Parameters, (P,) for all environments, or (K, P) for K equal parts of the batch.
     """
 
     def __init__(self, gait: Gait, values: np.ndarray):
@@ -80,7 +80,7 @@ class GaitPolicy:
         self.values = np.atleast_2d(values)
 
     def reset(self, seeds: Sequence[int]) -> None:
-        """Nothing to begin but the tables: a gait looks at the clock of its environment."""
+        """Clear the tables; a gait reads the clock of its environment."""
         self._play: Play | None = None
 
     def __call__(self, observations: np.ndarray, batch: Any) -> np.ndarray:
@@ -92,25 +92,25 @@ class GaitPolicy:
 
 
 def check_fits(gait: Gait, body: Body) -> None:
-    """Raise ``BadInputError`` if another animal has this gait."""
+    """Raise ``BadInputError`` if the gait is for another animal."""
     if gait.body != body.name:
         raise BadInputError(f"The gait {gait.name!r} is of the {gait.body}, not of the {body.name}.")
 
 
 def angle_to_goal(observations: np.ndarray, batch: Any) -> np.ndarray:
-    """Return the direction to the goal, from the heading and positive to the right [rad], (B,)."""
+    """Return the angle from the heading to the goal, positive to the right [rad], (B,)."""
     columns = [batch.observation_names.index(f"goal/{axis}") for axis in ("forward", "right")]
     forward, right = observations[:, columns].astype(np.float64).T
     return np.arctan2(right, forward)
 
 
 def _rows(values: np.ndarray, batch: Any) -> np.ndarray:
-    """Repeat what each gait has for all the environments that play it, (K, ...) to (B, ...)."""
+    """Repeat values per gait (K, ...) for the environments that play it (B, ...)."""
     return np.repeat(values, batch.num_envs // len(values), axis=0)
 
 
 COUPLES = tuple(Parameter(f"coefficient_{i}", b, 4e-3, -0.03, 0.03) for i, b in enumerate(SEED_COEFFICIENTS))
-"""Spline coefficients [N m], up to five times what the muscles can do: where these fall short, they do what they can"""
+"""Spline coefficients [N m], up to five times the muscles' strength, at which activations saturate"""
 WAVE_LENGTH = Parameter("wave_length", 1.0, 0.5, 0.2, 10.0)
 """In body lengths"""
 
@@ -137,7 +137,7 @@ def _prepare_steered_wave(body: Body, values: np.ndarray) -> Play:
 
 
 STROKE_SHAPE = (3, 3, len(OCTOPUS_FUNCTIONS))
-"""Always, forward and right; offset, sine and cosine; functions"""
+"""(always, forward, right), (offset, sine, cosine), functions"""
 
 
 def _prepare_stroke(body: Body, values: np.ndarray) -> Play:
@@ -145,7 +145,7 @@ def _prepare_stroke(body: Body, values: np.ndarray) -> Play:
         rows, angle = _rows(values, batch), angle_to_goal(observations, batch)
         always, forward, right = np.moveaxis(rows[:, 1:].reshape(-1, *STROKE_SHAPE), 1, 0)
         ahead, aside = np.cos(angle)[:, None, None], np.sin(angle)[:, None, None]
-        # the arms are each other's mirror images: what is ahead of one is behind the other
+        # the arms are mirror images: ahead of one is behind the other
         tables = [always + aside * right + side * ahead * forward for side in (1.0, -1.0)]
         return play_stroke(batch, rows[:, 0], tables)
 
@@ -153,7 +153,7 @@ def _prepare_stroke(body: Body, values: np.ndarray) -> Play:
 
 
 WAVE = Gait("wave", "snake", (*COUPLES, WAVE_LENGTH), _prepare_wave, "distance", 1)
-"""The snake's published gait: six coefficients of a spline and a wave length; its period is the published one."""
+"""The snake's published gait, with the published period: six spline coefficients and a wave length."""
 
 STEERED_WAVE = Gait(
     "steered_wave",
@@ -163,7 +163,7 @@ STEERED_WAVE = Gait(
     "return",
     8,
 )
-"""Such a wave with a period of its own [s], and a bend towards the goal of so much at one radian [N m]."""
+"""A wave with a variable period [s], and a bend towards the goal, in N m per radian."""
 
 STROKE = Gait(
     "stroke",
@@ -181,33 +181,33 @@ STROKE = Gait(
     "return",
     8,
 )
-"""A period [s], and activations that depend on the direction to the goal; the arms are each other's mirror images."""
+"""A period [s], and activations that depend on the direction to the goal; the arms are mirror images."""
 
 GAITS = {gait.name: gait for gait in (WAVE, STEERED_WAVE, STROKE)}
 
 
 def gait_for(env_id: str, body: str) -> Gait:
-    """Return the gait that is searched on an environment: the published wave where the way is straight ahead."""
+    """Return the default gait of a search; SnakeForward, which goes straight ahead, has the published wave."""
     if body == STROKE.body:
         return STROKE
     return WAVE if "SnakeForward" in env_id else STEERED_WAVE
 
 
 def describe(gait: Gait, values: np.ndarray) -> dict[str, Any]:
-    """Return a gait as what a YAML file has; `load_gait` reads it."""
+    """Return a gait as the contents of a YAML file, for `load_gait`."""
     names = (parameter.name for parameter in gait.parameters)
     return {"gait": gait.name, "parameters": dict(zip(names, map(float, values), strict=True))}
 
 
 def load_gait(path: Path) -> tuple[GaitPolicy, str]:
-    """Read the gait that a search wrote.
+    """Load a gait written by a search.
 
     Returns
     -------
     policy
         The gait.
     env_id
-        The environment that it was searched on.
+        The environment of the search.
     """
     try:
         saved = yaml.safe_load(path.read_text())

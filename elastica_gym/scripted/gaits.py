@@ -1,4 +1,4 @@
-"""Scripted gaits: travelling waves of couple, played through the animal's own muscles."""
+"""Scripted gaits: travelling waves of couple, produced by the animal's muscles."""
 
 import functools
 from collections.abc import Sequence
@@ -16,28 +16,28 @@ SEED_COEFFICIENTS = (3.4e-3, 3.3e-3, 4.2e-3, 2.6e-3, 3.6e-3, 3.5e-3)
 SEED_PERIOD = 2.0
 """Its period [s]"""
 SEED_WAVE = Wave(coefficients=SEED_COEFFICIENTS, period=SEED_PERIOD, wave_number=2.0 * np.pi)
-"""All of it; its wave length is the body's"""
+"""The published gait; its wave length is the body length"""
 CRAWL_PERIOD = 1.0
-"""Period of the scripted crawl [s]: twice as fast suits these muscles better"""
+"""Period of the scripted crawl [s]: these muscles work better at twice the published frequency"""
 PHASES = 64
 TURNING = 1.5e-3
-"""Couple with which the scripted crawl turns, at most [N m]"""
+"""Maximum turning couple of the scripted crawl [N m]"""
 
 
 def seed_gait(env: BatchEnv) -> Array:
-    """Return the actions of the snake's published gait, which goes straight on wherever it should go, (B, 42)."""
+    """Return the actions of the snake's published gait, which always goes straight, (B, 42)."""
     return _crawl(env, SEED_PERIOD, np.zeros(env.num_envs))
 
 
 def snake_crawl(env: BatchEnv, angle: Array) -> Array:
-    """Return the actions of a crawl that turns: the published gait, faster, on a constant bend, (B, 42).
+    """Return the actions of a crawl that turns: the published gait, faster, plus a constant bend, (B, 42).
 
     Parameters
     ----------
     env : BatchEnv
         Of snakes.
     angle : Array
-        Where to go, from the heading and positive to the right [rad], (B,).
+        Desired direction, relative to the heading, positive to the right [rad], (B,).
     """
     return _crawl(env, CRAWL_PERIOD, np.clip(angle, -1.0, 1.0))
 
@@ -55,8 +55,7 @@ def play_wave(env: BatchEnv, tables: Array, period: Array, turn: Array | float =
     env : BatchEnv
         Of snakes.
     tables : Array
-        Activations over the period of each wave, (W, PHASES, 42). Environments share them in equal parts: the first
-        B/W environments play the first wave.
+        Activations over the period of each wave, (W, PHASES, 42). Each wave has B/W environments, in order.
     period : Array
         [s], (B,)
     turn : Array or float
@@ -73,21 +72,21 @@ def _seed_tables(body: Body) -> tuple[Array, Array]:
 
 
 def wave_activations(body: Body, wave: Wave) -> Array:
-    """Return the activations that play a wave over its period, (PHASES, 42)."""
+    """Return the activations that produce a wave over its period, (PHASES, 42)."""
     phases = 2.0 * np.pi * np.arange(PHASES) / PHASES
     return activations_for(wave_couples(body.rods[0], phases, wave), couple_matrix(body.muscles, body.rods[0]))
 
 
 def turn_activations(body: Body) -> Array:
-    """Return the activations of a constant bend to the right, of 1 N m if the muscles were that strong, (42,)."""
+    """Return the activations of a constant bend to the right, linearly scaled to 1 N m, (42,)."""
     matrix = couple_matrix(body.muscles, body.rods[0])
     return activations_for(np.full((1, matrix.shape[2]), TURNING), matrix)[0] / TURNING
 
 
 def wave_couples(rod: Rod, phases: Array, wave: Wave = SEED_WAVE) -> Array:
-    """Return the couples of a wave at given phases of its period [N m], (m, n - 1)."""
+    """Return the couples of a wave at m phases of its period [N m], (m, n - 1)."""
     sine, cosine = wave.profiles(rod.rest_length)
-    # minus: a couple on the element behind and its reverse on the one before are minus the moment inside
+    # minus: the couple on the element behind, and its reverse on the one before, is minus the internal moment
     return -(np.sin(phases)[:, None] * sine + np.cos(phases)[:, None] * cosine)
 
 
@@ -109,24 +108,24 @@ OCTOPUS_STROKES = {
         ),
     ),
 }
-"""The scripted crawls of the octopus: period [s], and offset, sine and cosine of six activations of both arms alike,
-the first three functions about the normal and about the binormal. The means of 240 trials each of CMA-ES on the way
-made in 6 s without toppling, to the left with periods from 0.8 s"""
+"""The scripted crawls of the octopus: period [s], and offset, sine and cosine of six activations, equal in both arms:
+the first three functions about the normal and about the binormal. Each is the final mean of CMA-ES, 240 trials, on the
+distance covered in 6 s without toppling; to the left with periods of at least 0.8 s"""
 OCTOPUS_FUNCTIONS = np.concatenate([OCTOPUS.columns(direction, "first")[:3] for direction in ("normal", "binormal")])
-"""The first arm's activations that a stroke plays"""
+"""The first arm's activations used by a stroke"""
 
 
 def octopus_crawl(env: BatchEnv, angle: Array) -> Array:
-    """Return the actions of a crawl to the left or to the right, whichever is nearer to where to go, (B, 42).
+    """Return the actions of a crawl to the left or to the right, whichever is closer to the desired direction, (B, 42).
 
-    Both arms stroke alike, so it goes only these two ways: towards its arms and away from them.
+    Both arms stroke alike, so these are the only two directions: towards the arms and away from them.
 
     Parameters
     ----------
     env : BatchEnv
         Of octopuses.
     angle : Array
-        Where to go, from the head's axis and positive to the right [rad], (B,).
+        Desired direction, relative to the head's axis, positive to the right [rad], (B,).
     """
     strokes = {name: _stroke(env, *gait) for name, gait in OCTOPUS_STROKES.items()}
     return np.where((angle > 0.0)[:, None], strokes["right"], strokes["left"])
@@ -146,7 +145,7 @@ def play_stroke(env: BatchEnv, period: Array, tables: Sequence[Array]) -> Array:
     period : Array
         [s], (B,)
     tables : sequence of Array
-        Offset, sine and cosine of the activations ``OCTOPUS_FUNCTIONS`` of each arm, (3, 6), or (B, 3, 6) where
+        Offset, sine and cosine of the activations ``OCTOPUS_FUNCTIONS`` of each arm, (3, 6), or (B, 3, 6) if
         environments differ.
     """
     # the first control step begins at phase zero
@@ -160,11 +159,11 @@ def play_stroke(env: BatchEnv, period: Array, tables: Sequence[Array]) -> Array:
 
 
 SWING = 0.7
-"""Activation with which the scripted reach bends an arm towards what is ahead or behind"""
+"""Activation with which the scripted reach bends an arm towards an object ahead or behind"""
 
 
 def octopus_reach(env: BatchEnv, angle: Array) -> Array:
-    """Return the actions of a crawl to what stands to a side; to what is ahead or behind, an arm bends, (B, 42)."""
+    """Return the actions that crawl to an object at the side, or bend an arm to one ahead or behind, (B, 42)."""
     actions = octopus_crawl(env, angle)
     for rows, arm in ((np.abs(angle) < 0.25 * np.pi, 1), (np.abs(angle) > 0.75 * np.pi, 0)):
         bend = np.zeros(env.body.n_activations)

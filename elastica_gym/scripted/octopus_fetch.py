@@ -1,10 +1,9 @@
-"""A scripted octopus: it walks to its object, turns an arm's inside to it, bends the arm around it and carries it home.
+"""A scripted octopus: walks to its object, turns an arm's inner side to it, wraps the arm around it, carries it home.
 
-It goes by what is observed, the time, and whether the object is grabbed. Bending at full strength, an arm takes
-hold of what stands in its bend, within some 15 cm of its base and on the right of it, the side away from the other
-arm. Places are as seen from the head: ahead and to the right [m]. What holds for the
-second arm, which points ahead, holds for the first one in the mirror: with the same activations, for those that twist
-are zero.
+Inputs are the observation, the time, and whether the object is grabbed. Bent at full strength, an arm grips an object
+inside its bend, within some 15 cm of its base and to its right, the side away from the other arm. Positions are
+relative to the head: ahead and to the right [m]. Rules are for the second arm, which points ahead; those of the first
+arm are mirrored, with the same activations, since twisting activations are zero.
 """
 
 import functools
@@ -23,43 +22,42 @@ from ..envs.tasks.octopus_fetch import TASK
 from .gaits import OCTOPUS_FUNCTIONS, OCTOPUS_STROKES
 
 STROKING = OCTOPUS_FUNCTIONS
-"""The first arm's activations that a stroke plays"""
+"""The first arm's activations used by a stroke"""
 BENDING = OCTOPUS.columns("normal", "first")
 """The first arm's activations that bend it sideways"""
 LIFTING = OCTOPUS.columns("binormal", "first")[:3]
-"""Its activations of the first three functions that lift it"""
+"""The first arm's activations of the first three functions, which lift it"""
 STEERING = 0.5
-"""Angle off course at which one arm rests, and the other turns the animal [rad]"""
+"""Angle off course at which one arm rests while the other turns the animal [rad]"""
 LEAST = -0.5
-"""What an arm does of the stroke, at least: the reverse of half of it"""
+"""Minimum stroke factor of an arm; negative is a reversed stroke"""
 CLOSE = (0.28, 0.3)
-"""Distance from the head below which it turns rather than walks: where the object is sideways, and elsewhere [m]"""
+"""Distance from the head below which it turns instead of walking: for an object at the side, and elsewhere [m]"""
 BEHIND = -0.12
-"""How far the object may be to the left for that [m]"""
+"""Minimum position of the object to the right for turning [m]"""
 BOUT = (3, 5)
-"""Near the object, how many strokes it turns at a time, and with the rest after it, in which it looks"""
+"""Strokes of turning per bout near the object, and strokes per bout including the rest for observing"""
 NEAR = 0.13
-"""Gap between the object and an arm's inner half below which it does so [m]"""
+"""Gap between the object and an arm's inner half below which it turns in bouts [m]"""
 UNSTROKED = slice(3, None)
-"""Of the activations that bend an arm sideways, those that no stroke plays"""
+"""Activations that bend an arm sideways and are not part of a stroke"""
 BENT = 0.05
-"""Their mean from which on an arm is bent as a whole"""
+"""Mean of these above which the whole arm is bent"""
 LEAST_BEND = 0.1
-"""Activation with which it begins"""
+"""Initial bending activation"""
 STILL = (0.1, 0.1)
-"""Largest activation and speed of a node at which it lies still [1, m/s]"""
+"""Largest activation and node speed at which the animal counts as still [1, m/s]"""
 BEND = ((0.18, 0.345), -0.04, 0.07)
-"""Where an arm that lies still begins to bend: how far ahead, at least how far to the right, and how near to its inner
-half [m]"""
+"""Object position at which a still arm begins to bend: range ahead, minimum to the right, maximum gap to its inner half
+[m]"""
 REACH = ((0.1, 0.4), (-0.15, 0.2))
-"""Where it goes on bending: how far ahead and to the right [m]"""
+"""Object position at which it continues to bend: ranges ahead and to the right [m]"""
 RAMP = 0.04
-"""By how much the activation that bends it is ahead of what the muscles have reached: with more, it fells what it
-should hold"""
+"""Lead of the commanded bending activation over the reached one: a larger lead knocks the object over"""
 LEANING = 0.05
-"""Tilt of the object above which the arm that bends around it yields until it stands again [rad]"""
+"""Tilt of the object above which the bending arm yields until the object is upright again [rad]"""
 EMPTY = (0.9, 1)
-"""Activation from which on an arm has missed, and lets go, where no more parts than this touch the object"""
+"""An arm has missed, and lets go, above this activation if at most this many parts touch the object"""
 
 CARRYING = {
     "ahead": (
@@ -81,24 +79,24 @@ CARRYING = {
         ),
     ),
 }
-"""How it carries an object in the second arm where it does not hurry: the way that the head makes in 4 s [m], the
-period [s], and offset, sine and cosine of the free arm's activations of a stroke and of the three that lift the holding
-arm. Found by CMA-ES, 24 generations of 12 trials in each direction, on the way made while the object stays wrapped"""
+"""The slow gaits that carry an object in the second arm: displacement of the head in 4 s [m], period [s], and offset,
+sine and cosine of the free arm's stroke and of the three activations that lift the holding arm. Found by CMA-ES, 24
+generations of 12 trials in each direction, on the displacement while the object stays wrapped"""
 
 
 class Gait(NamedTuple):
-    """A gait that steers, with which the octopus carries an object in its second arm."""
+    """A steerable gait that carries an object in the second arm."""
 
     course: float
-    """Where it goes: angle to the right of straight ahead [rad]"""
+    """Direction of travel, to the right of straight ahead [rad]"""
     width: float
-    """How far off its course it is played [rad]"""
+    """Maximum deviation from its course at which it is used [rad]"""
     period: float
     """[s]"""
     table: tuple[tuple[float, ...], ...]
     """Offset, sine and cosine of the activations, as in `CARRYING`"""
     steering: tuple[float, ...]
-    """What is added to them per angle from the course to the way [1/rad], of up to 1 rad"""
+    """Added to the activations per angle from course to goal [1/rad], clipped to 1 rad"""
 
 
 HOMEWARD = Gait(
@@ -112,45 +110,45 @@ HOMEWARD = Gait(
     ),
     (-0.35, 0.09, -0.55, -0.09, -0.03, -0.62, -0.21, -0.27, 0.24),
 )
-"""How it hurries home, which is mostly where it came from: to the left and somewhat behind. It is more than twice as
-fast as the others. Found by `scripts/search_carrying.py`, by CMA-ES on how soon the object is home; the course was then
-set by hand to what the gait makes near home, and the width to what brings home most in OctopusReturn (28 of 48 with
-1.4, 23 with 2, 21 with 4)"""
+"""The fast gait home, which is mostly to the left and somewhat behind; more than twice as fast as the others. Found by
+CMA-ES in `scripts/search_carrying.py`, on the time to bring the object home. The course was then set by hand to the
+gait's direction near home, and the width to the most successful one in OctopusReturn (28 of 48 with 1.4, 23 with 2, 21
+with 4)"""
 
 
 class Sight(NamedTuple):
-    """What the script goes by, told from the observations of B octopuses with an object."""
+    """The inputs of the script, from the observations of B octopuses with an object."""
 
     ahead: Array
-    """How far the object's base is ahead of the head [m], (B,)"""
+    """Position of the object's base ahead of the head [m], (B,)"""
     right: Array
-    """And to its right [m], (B,)"""
+    """Position of the object's base to the right of the head [m], (B,)"""
     gap: Array
-    """Gap between the object and the inner half of either arm, as the nodes between have it [m], (B,)"""
+    """Gap between the object and the inner half of the nearer arm, by its observed nodes [m], (B,)"""
     touched: Index
-    """How many parts of the body touch the object, (B,) int64"""
+    """Number of body parts that touch the object, (B,) int64"""
     levels: Array
-    """Activations that the muscles have reached, (B, 42)"""
+    """Activations reached by the muscles, (B, 42)"""
     tilt: Array
     """Angle of the object's axis from upright [rad], (B,)"""
     speed: Array
-    """Of the fastest node [m/s], (B,)"""
+    """Speed of the fastest node [m/s], (B,)"""
     goal: Array
-    """Way to carry the object, ahead and to the right [m], (B, 2): where to go, as far as it is home"""
+    """Displacement for carrying, ahead and to the right [m], (B, 2): goal direction times distance to home"""
 
 
 @functools.cache
 def _layout() -> tuple[Layout, int]:
-    """Return where observations have what the script goes by, and which of the observed nodes is the head's centre."""
+    """Return the layout of observations, and the index of the head's centre among the observed nodes."""
     body = octopus()
     return TASK.layout(body), body.sensors.nodes.tolist().index(body.sensors.head)
 
 
 def see(observations: NDArray[np.float32]) -> Sight:
-    """Return what the script goes by, from observations (B, 210) of a task with an object."""
+    """Return the inputs of the script, from observations (B, 210) of a task with an object."""
     layout, head = _layout()
     o: Array = observations.astype(np.float64)
-    # of a body of 1 m
+    # observations are in body lengths, 1 m here
     axis = o[:, layout["object/0/axis"]]
     base = o[:, layout["object/0/position"]] - 0.5 * OBJECT_LENGTH * axis
     places = o[:, layout["position"]].reshape(len(o), -1, 3)
@@ -169,7 +167,7 @@ def see(observations: NDArray[np.float32]) -> Sight:
 
 
 def _gap(nodes: Array, base: Array) -> Array:
-    """Return the horizontal gap between an object and the inner halves of arms through nodes (B, 11, 3), (B,)."""
+    """Return the horizontal gap between an object and the arms' inner halves, from nodes (B, 11, 3), (B,)."""
     plane, foot = nodes[..., [0, 2]], base[:, None, [0, 2]]
     gaps = []
     for inner in (slice(2, 5), slice(6, 9)):
@@ -181,12 +179,12 @@ def _gap(nodes: Array, base: Array) -> Array:
 
 
 def fetch(env: BatchEnv) -> Array:
-    """Return the actions of the script in a task that follows how the object is handled, (B, 42)."""
+    """Return the actions of the script in a task that tracks how the object is handled, (B, 42)."""
     return play(env, see(env.observations))
 
 
 def play(env: BatchEnv, sight: Sight) -> Array:
-    """Return the actions of the script on what it goes by, at the time of each environment, (B, 42)."""
+    """Return the actions of the script for given inputs, at the time of each environment, (B, 42)."""
     time = env.elapsed.astype(np.float64) * env.control_dt
     return act(sight, time, env.situation().progress.grabbed == 1.0)
 
@@ -198,14 +196,14 @@ def act(sight: Sight, time: Array, grabbed: Mask) -> Array:
     ----------
     sight : Sight
     time : Array
-        Since the start of the episode [s], (B,).
+        Time since the start of the episode [s], (B,).
     grabbed : Mask
         Whether an arm has grabbed the object, (B,) bool.
     """
     ahead, right = sight.ahead, sight.right
     bearing = np.arctan2(right, ahead)
     sideways = np.abs(bearing - 0.5 * np.pi) < 0.4
-    # what is ahead is for the second arm, what is behind for the first
+    # the second arm for objects ahead, the first for objects behind
     arm = np.where(ahead >= 0.0, 1, 0)
     is_close = np.sqrt(ahead * ahead + right * right) < np.where(sideways, *CLOSE)
     actions = walk(time, bearing)
@@ -219,7 +217,7 @@ def act(sight: Sight, time: Array, grabbed: Mask) -> Array:
 
 
 def _is_in_the_bend(sight: Sight, arm: Index) -> Mask:
-    """Return whether an arm has the object where it should begin or go on to bend, (B,)."""
+    """Return whether the object is where an arm should begin or continue to bend, (B,)."""
     ahead, right = np.abs(sight.ahead), sight.right
     bent = np.take_along_axis(sight.levels, BENDING + arm[:, None] * N_FUNCTIONS, axis=1)
     level = bent[:, UNSTROKED].mean(axis=1)
@@ -229,7 +227,7 @@ def _is_in_the_bend(sight: Sight, arm: Index) -> Mask:
     begins &= (np.abs(sight.levels).max(axis=1) < most) & (sight.speed < fastest)
     (nearest, furthest), (left, rightmost) = REACH
     goes_on = (ahead > nearest) & (ahead < furthest) & (right > left) & (right < rightmost)
-    # bent as a whole, not by a stroke
+    # the whole arm is bent, not only by a stroke
     goes_on &= level > BENT
     goes_on &= (level < EMPTY[0]) | (sight.touched > EMPTY[1])
     return begins | goes_on
@@ -243,14 +241,14 @@ def walk(time: Array, bearing: Array) -> Array:
 
 
 def turn(sight: Sight, time: Array, arm: Index) -> Array:
-    """Return the actions of a turn that brings an arm, which rests, to the right, near the object in bouts, (B, 42)."""
+    """Return the actions of a turn that moves a resting arm to the right, in bouts near the object, (B, 42)."""
     strokes, bout = BOUT
     strength: Array = ((sight.gap > NEAR) | (time / OCTOPUS_STROKES["right"][0] % bout < strokes)).astype(np.float64)
     return _play(time, strength * arm, strength * (1.0 - arm))
 
 
 def _play(time: Array, first: Array, second: Array) -> Array:
-    """Return the actions of the stroke to the right, each arm's times a factor (B,), (B, 42)."""
+    """Return the actions of the stroke to the right, scaled by a factor (B,) for each arm, (B, 42)."""
     period, table = OCTOPUS_STROKES["right"]
     level = np.clip(_wave(time, np.full(len(time), period), np.array(table)), -1.0, 1.0)
     actions = np.zeros((len(time), OCTOPUS.n_activations))
@@ -259,13 +257,13 @@ def _play(time: Array, first: Array, second: Array) -> Array:
 
 
 def _wave(time: Array, period: Array, table: Array) -> Array:
-    """Return offset + sine + cosine of the clock, from rows of a table (3, n) or (B, 3, n), (B, n)."""
+    """Return offset + sine + cosine with the rows of a table (3, n) or (B, 3, n) as amplitudes, (B, n)."""
     phase = (2.0 * np.pi * time / period)[:, None]
     return table[..., 0, :] + table[..., 1, :] * np.sin(phase) + table[..., 2, :] * np.cos(phase)
 
 
 def bend(sight: Sight, arm: Index) -> Array:
-    """Return the actions that bend an arm more and more, but less where what it holds leans, (B, 42)."""
+    """Return the actions that bend an arm further, or less if the object leans, (B, 42)."""
     columns = BENDING + arm[:, None] * N_FUNCTIONS
     level = np.take_along_axis(sight.levels, columns, axis=1).mean(axis=1)
     level = np.maximum(level + np.where(sight.tilt > LEANING, -RAMP, RAMP), LEAST_BEND)
@@ -275,8 +273,8 @@ def bend(sight: Sight, arm: Index) -> Array:
 
 
 def carry(way: Array, time: Array, arm: Index, homeward: Gait = HOMEWARD) -> Array:
-    """Return the actions that carry the object some way (B, 2) [m] in an arm, (B, 42)."""
-    # in the mirror, for the first arm
+    """Return the actions that carry the object in an arm by a displacement (B, 2) [m], (B, 42)."""
+    # mirrored for the first arm
     ahead, right = np.where(arm == 1, 1.0, -1.0) * way[:, 0], way[:, 1]
     ways, periods, tables = (np.array(column) for column in zip(*CARRYING.values(), strict=True))
     along = ahead[:, None] * ways[:, 0] + right[:, None] * ways[:, 1]

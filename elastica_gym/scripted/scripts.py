@@ -1,4 +1,4 @@
-"""A script for each task: from a batch of environments, whose whole state it may look at, the actions."""
+"""A script for each task: a function from a batch, with access to its whole state, to actions."""
 
 from collections.abc import Callable
 
@@ -15,7 +15,7 @@ from .gaits import octopus_crawl, octopus_reach, snake_crawl
 from .octopus_fetch import HOMEWARD, fetch, play, see
 
 Script = Callable[[BatchEnv], Array]
-"""From a batch of B environments, the actions, (B, A)"""
+"""Function from a batch of B environments to actions (B, A)"""
 
 
 def forward(env: BatchEnv) -> Array:
@@ -26,13 +26,13 @@ def forward(env: BatchEnv) -> Array:
 def reach(env: BatchEnv) -> Array:
     """Return the actions of a crawl that turns towards the target, (B, 42)."""
     s = env.situation()
-    # from the centre of mass, not from the head
+    # relative to the centre of mass, not the head
     forward, right = in_heading_frame(s, s.goal.x - s.pose.centre[:, 0], s.goal.z - s.pose.centre[:, 2])
     return snake_crawl(env, np.arctan2(right, forward))
 
 
 def steer(env: BatchEnv) -> Array:
-    """Return the actions of a crawl in the commanded direction, weaker where it is too fast, (B, 42)."""
+    """Return the actions of a crawl in the commanded direction, weaker if it is too fast, (B, 42)."""
     forward, right, speed, along, across = snake_steer.observe_goal(env.situation()).T
     lag = speed - (along * forward + across * right)
     strength = np.clip(speed / snake_steer.SPEEDS[1] + 10.0 * lag, 0.0, 1.0)
@@ -45,22 +45,22 @@ def crawl_to_the_commanded_side(env: BatchEnv) -> Array:
 
 
 def reach_for_the_object(env: BatchEnv) -> Array:
-    """Return the actions of a script that throws an arm at the object, or crawls to it, (B, 42)."""
+    """Return the actions that bend an arm to the object or crawl to it, (B, 42)."""
     forward, right = direction_to_object(env.situation())
     return octopus_reach(env, np.arctan2(right, forward))
 
 
 def move(env: BatchEnv) -> Array:
-    """Return the actions that grab the object and carry it wherever the gait goes of itself, (B, 42)."""
+    """Return the actions that grab the object and carry it in the gait's natural direction, (B, 42)."""
     sight = see(env.observations)
-    # in the mirror, for the first arm
+    # mirrored for the first arm
     side = np.where(sight.ahead >= 0.0, 1.0, -1.0)
     course = np.stack([side * np.cos(HOMEWARD.course), np.full(env.num_envs, np.sin(HOMEWARD.course))], axis=1)
     return play(env, sight._replace(goal=course))
 
 
 def _bearing(observed: Array) -> Array:
-    """Return the direction that an observed goal begins with, from the heading, positive to the right [rad], (B,)."""
+    """Return the angle from the heading to an observed goal, positive to the right [rad], (B,)."""
     return np.arctan2(observed[:, 1], observed[:, 0])
 
 
@@ -73,18 +73,18 @@ _scripts: dict[str, Script] = {
     "OctopusMove": move,
     **dict.fromkeys(("OctopusGrab", "OctopusReturn", "OctopusFetch"), fetch),
 }
-"""By the name of the task"""
+"""Scripts by task name"""
 
 
 def register_script(task_name: str, script: Script) -> None:
-    """Give a task a script, which ``agents`` then plays as the policy ``scripted`` and imitates.
+    """Register the script of a task, which ``agents`` then runs as the policy ``scripted`` and imitates.
 
     Parameters
     ----------
     task_name : str
-        Name of the `Task`; the script also serves the goal-conditioned form of it.
+        Name of the `Task`; the script also applies to its goal-conditioned variant.
     script : callable
-        From a `BatchEnv` of B environments, the actions, (B, A).
+        Function from a `BatchEnv` of B environments to actions (B, A).
     """
     _scripts[task_name] = script
 
@@ -100,7 +100,7 @@ def scripted_policy(task: Task) -> Script:
     name = task.base if isinstance(task, GoalTask) else task.name
     if name not in _scripts:
         raise ValueError(
-            f"{name} has no script; elastica_gym.scripted.register_script gives it one. "
-            f"Tasks that have one: {', '.join(_scripts)}"
+            f"{name} has no script; register one with elastica_gym.scripted.register_script. "
+            f"Tasks with a script: {', '.join(_scripts)}"
         )
     return _scripts[name]

@@ -1,4 +1,4 @@
-"""The interface of the 2020 hackathon, as its main loop uses it."""
+"""The interface of the 2020 hackathon, as used by its main loop."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def test_where_things_start():
     np.testing.assert_allclose(thing.position_collection[:, 0], [-0.5, 0.5 * thing.length, 0.3], atol=1e-3)
     np.testing.assert_allclose(thing.director_collection[2, :, 0], [0.0, 1.0, 0.0], atol=1e-9)
     assert (rod.velocity_collection == 0.0).all()
-    # the head's axis from the first arm to the second is along +z, as published
+    # the head's axis, from the first arm to the second, is along +z as published
     assert rod.position_collection[2, 70] > 0.55 and rod.position_collection[2, 50] < 0.45
 
 
@@ -94,24 +94,24 @@ def test_activations_are_clipped_and_may_be_changed_in_place():
     assert np.abs(rod.position_collection - ends[0]).max() < 1e-3
 
 
-def test_the_second_episode_is_the_first():
+def test_the_second_episode_equals_the_first():
     env = Environment(1.0, TARGET)
     first = play(env, activation(0, 1), 300)[1][0].position_collection.copy()
     np.testing.assert_array_equal(play(env, activation(0, 1), 300)[1][0].position_collection, first)
 
 
-def test_what_has_diverged_is_done():
+def test_a_diverged_simulation_is_done():
     env = Environment(1.0, TARGET)
     env.reset()
     env._state.v[0, 0, 40] = np.nan
     assert env.step(activation(), 0.0)[2]
 
 
-def test_what_cannot_be():
+def test_bad_input():
     with pytest.raises(ValueError, match="final_time"):
         Environment(0.0, TARGET)
     for target in ([0.0, 0.5], [0.0, 0.1, 0.0], [np.nan, 0.0, 0.0], None):
-        with pytest.raises(ValueError, match="target_position must be a place"):
+        with pytest.raises(ValueError, match="target_position must be a point"):
             Environment(1.0, target)
     with pytest.raises(ValueError, match="is in the animal or within"):
         Environment(1.0, [0.0, 0.0, 0.5]).reset()

@@ -1,4 +1,4 @@
-"""The judge end to end: policies in a process of their own, samples of real physics, points."""
+"""The judge end to end: policies in a separate process, samples of real physics, points."""
 
 import json
 import subprocess
@@ -53,10 +53,10 @@ def look_on(*_):
     pass
 
 
-# what the policy is given, and what it may give
+# input and output of the policy
 
 
-def test_a_file_sees_observations_and_remembers_its_own_episode(write):
+def test_a_file_gets_observations_and_has_a_memory_per_episode(write):
     path = write(
         "import numpy as np\n\ncalls = 0\n\ndef reset():\n    global calls\n    calls = 10\n\n"
         "def policy(observation):\n    global calls\n    calls += 1\n"
@@ -96,7 +96,7 @@ def test_a_policy_that_fails(write, body, message):
 
 
 @pytest.mark.parametrize("text", ["import nothing_of_that_name\n", "x = 1\n", "def policy(\n", "policy = 3\n"])
-def test_a_file_that_is_no_policy(write, text):
+def test_a_file_that_is_not_a_policy(write, text):
     with PolicyProcess(write(text)) as policy, pytest.raises(PolicyError, match="has ended"):
         policy.begin(1)
 
@@ -109,7 +109,7 @@ def test_a_file_may_print(write):
 
 
 def test_pickled_objects_are_not_read(write):
-    """A policy that writes into the pipe itself, what NumPy would unpickle."""
+    """A policy that writes a pickled array directly into the pipe."""
     path = write(
         "import gc, io\nfrom multiprocessing.connection import Connection\nimport numpy as np\n\n"
         "def policy(observation):\n"
@@ -119,7 +119,7 @@ def test_pickled_objects_are_not_read(write):
     )
     with PolicyProcess(path) as policy:
         policy.begin(1)
-        with pytest.raises(PolicyError, match="no array"):
+        with pytest.raises(PolicyError, match="did not return an array"):
             policy(np.zeros((1, 5), np.float32), (1, 42))
 
 
@@ -130,7 +130,7 @@ def test_no_policy():
 
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory):
-    """The folder of a run with a network that has learned nothing, and statistics."""
+    """The folder of a run with an untrained network and statistics."""
     folder = tmp_path_factory.mktemp("run")
     env = VecNormalize(make_batch_vec_env(REACH, n_envs=4))
     env.seed(0)
@@ -192,14 +192,14 @@ def test_sampling_changes_nothing(control_dt):
     gaps = np.diff(samples.time)
     assert gaps.min() > 0.0 and gaps.max() <= SAMPLE_TIME + 1e-12
     assert samples.time[-1] == pytest.approx(control_dt * len(actions))
-    # those within a step are of the same motion: nothing jumps, and the ends are where the batch is
+    # samples within a step follow the same motion: no jumps, and the ends match the batch
     assert np.abs(np.diff(samples.head, axis=0)).max() < 0.05
     np.testing.assert_array_equal(samples.head[-1], env.state.x[:, [0, 2], env.body.sensors.head])
     assert samples.counted.all()
 
 
-def test_samples_within_a_step_are_what_the_physics_does():
-    """With control steps of a sample each, the same samples but for rounding, which friction amplifies."""
+def test_samples_within_a_step_match_the_physics():
+    """Control steps of one sample each give the same samples up to rounding, which friction amplifies."""
     actions = np.random.default_rng(1).uniform(-1.0, 1.0, (1, 42)).astype(np.float32)
 
     def run(control_dt):
@@ -225,7 +225,7 @@ def test_an_episode_depends_on_its_seed_alone(write):
 def test_an_episode_is_over_when_the_animal_has_toppled():
     def topple(batch, sampler, infos):
         if batch.elapsed[0] == 1:
-            # about its own axis, as a ball rolls
+            # about its own axis, rolling like a ball
             batch.state.w[1, 2] = 50.0
             batch.state.v[1, 1] = 1.0
 
@@ -255,7 +255,7 @@ def test_an_object_that_flies_by_itself_was_not_moved():
 
 
 def beside_the_second_arm(batch, sampler, infos):
-    """Put the object where the second arm will close on it, standing."""
+    """Place the upright object where the second arm will close around it."""
     if infos is None:
         body, state, k = batch.body, batch.state, int(batch.body.model.first_slot[0]) + 86
         for i in range(batch.num_envs):
@@ -281,7 +281,7 @@ def test_an_arm_that_holds_the_object_has_grabbed_it():
 
 
 @pytest.mark.parametrize("text", [ZERO, RANDOM])
-def test_zero_and_random_are_worth_nothing(write, text):
+def test_zero_and_random_score_nothing(write, text):
     result = judge(write(text), REACH, targets=2, target_seed=2020, duration=2.0)
     assert result["total"] == 0.0 and result["error"] == ""
     assert [result[goal] for goal in (*GOALS, "general")] == [0.0] * 6
@@ -289,14 +289,14 @@ def test_zero_and_random_are_worth_nothing(write, text):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("text", [ZERO, RANDOM])
-def test_zero_and_random_are_worth_nothing_in_whole_episodes(write, text):
+def test_zero_and_random_score_nothing_in_whole_episodes(write, text):
     result = judge(write(text), FETCH, targets=10, target_seed=2020)
     assert result["total"] == 0.0 and result["error"] == ""
 
 
 @pytest.mark.slow
-def test_all_goals_can_be_held():
-    """By a script that looks at the whole state, in some of ten episodes."""
+def test_all_goals_can_be_achieved():
+    """By a script with access to the whole state, in some of ten episodes."""
     seen = {}
 
     def watch(batch, sampler, infos):
@@ -309,7 +309,7 @@ def test_all_goals_can_be_held():
     assert goals_held(samples)[-1].any()
 
 
-def test_a_policy_that_breaks_late_is_worth_nothing(write):
+def test_a_policy_that_fails_late_scores_nothing(write):
     path = write(
         ZERO.replace("import", "calls = 0\nimport").replace(
             "    return", "    global calls\n    calls += 1\n    assert calls < 4\n    return"
@@ -331,7 +331,7 @@ def test_a_policy_that_breaks_late_is_worth_nothing(write):
         (dict(n_threads=5000), "threads must be at most 4096, got 5000"),
     ],
 )
-def test_what_cannot_be_judged(write, changed, message):
+def test_bad_arguments_are_refused(write, changed, message):
     with pytest.raises(BadInputError, match=message):
         judge(**{"path": write(ZERO), "env_id": REACH, "targets": 1, "target_seed": 0, **changed})
 
@@ -343,7 +343,7 @@ def score_command(*args):
 
 def test_the_command(write, tmp_path):
     out, recordings = tmp_path / "out" / "score.json", tmp_path / "recordings"
-    # three steps, and then it falls over: no traceback but its own
+    # the policy fails after three steps; only its own traceback is printed
     path = write(
         ZERO.replace("def policy", "calls = 0\n\ndef policy").replace(
             "    return", "    global calls\n    calls += 1\n    assert calls < 4, 'enough'\n    return"

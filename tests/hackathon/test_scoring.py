@@ -1,4 +1,4 @@
-"""The goals, against an episode that meets them all and others that almost do."""
+"""The goals, for an episode that achieves them all and variations that narrowly miss."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ clock = np.arange(round(END / DT) + 1) * DT
 
 
 def along(*points):
-    """Return a course over time through (time, value) points."""
+    """Interpolate (time, value) points over time."""
     return np.interp(clock, *zip(*points, strict=True))
 
 
@@ -44,7 +44,7 @@ def perfect(**changed):
 
 
 def held(samples):
-    """Return the goals that an episode holds."""
+    """Return the goals that an episode achieves."""
     return [goal for goal, ok in zip(GOALS, goals_held(samples)[:, 0], strict=True) if ok]
 
 
@@ -53,7 +53,7 @@ def up_to(goal):
 
 
 def with_spans(degrees, *, first=0, counts=20):
-    """An episode whose arm, the first or the second, spans an angle over time; the other spans nothing."""
+    """An episode in which one arm spans an angle over time, and the other nothing."""
     spans, numbers = np.zeros((clock.size, 1, 2)), np.zeros((clock.size, 1, 2), dtype=np.int64)
     spans[:, 0, first] = np.radians(degrees)
     numbers[:, 0, first] = np.where(degrees > 0.0, counts, 0)
@@ -83,7 +83,7 @@ def test_the_head_has_to_come_far_enough():
 
 
 def test_the_body_has_to_come_along():
-    """A head that an animal throws forward while its arms stay behind."""
+    """The head is thrown forward while the arms stay behind."""
     assert held(perfect(centre=course(along((0.0, 0.0), (3.0, 0.099), (10.0, 0.0))))) == []
 
 
@@ -112,7 +112,7 @@ def test_an_object_that_slides_after_a_blow():
 
 
 def test_an_object_that_is_touched_now_and_then():
-    """Touched in every second sample: no stretch of its way is between two touches."""
+    """Touched in every second sample: no displacement lies between two touches."""
     assert held(perfect(touched=(np.arange(clock.size) % 2 == 0)[:, None])) == up_to("move")
 
 
@@ -122,7 +122,7 @@ def test_an_object_that_is_moved_while_tipped_over():
 
 
 def test_an_object_that_is_shaken():
-    """Five metres of way, to and fro by 0.08 m."""
+    """A path of five metres, to and fro by 0.08 m."""
     shaken = 0.4 + 0.04 * np.sin(2.0 * np.pi * 4.0 * clock)
     assert np.abs(np.diff(shaken[clock >= 3.5])).sum() > 5.0
     assert held(perfect(base=course(shaken))) == up_to("move")
@@ -165,7 +165,7 @@ def test_a_grab_takes_half_a_second(seconds, grabs):
 
 
 def test_a_grab_with_a_break():
-    """Three seconds of grip, of which one sample in 49 is missing."""
+    """Three seconds of grip with every 49th sample missing."""
     degrees = np.where(between(4.0, 7.0) & (np.arange(clock.size) % 49 > 0), 220.0, np.where(clock > 4.0, 199.0, 0.0))
     assert held(with_spans(degrees)) == up_to("grab")
 
@@ -183,7 +183,7 @@ def test_arms_do_not_add_up():
 
 
 def test_arms_do_not_take_turns():
-    """Each holds for 0.4 s at a time, so that one of them always does."""
+    """Each holds for 0.4 s at a time, so that one of them always holds."""
     turn = (clock // 0.4).astype(int) % 2
     spans = np.radians(220.0) * np.stack([turn == 0, turn == 1], axis=1)[:, None]
     counts = np.full((clock.size, 1, 2), 20)
@@ -230,30 +230,30 @@ def test_the_head_has_to_come_home():
 
 
 def test_home_is_not_enough_without_the_object():
-    """It is left behind, though moved."""
+    """It was moved, but left behind."""
     assert held(perfect(base=course(along((5.0, 0.5), (10.0, 0.36))))) == up_to("return")
 
 
 def test_the_object_has_to_be_held_at_home():
-    """Held until 0.1 s before it is at home, and flung the rest of the way."""
+    """Held until 0.1 s before it is home, and flung the rest of the way."""
     samples = perfect()
     home = np.argmax(samples.head[:, 0, 0][clock > 5.0] <= 0.1) + np.argmax(clock > 5.0)
     samples.spans[home - 10 :] = 0.0
     assert held(samples) == up_to("return")
 
 
-def test_who_never_left_does_not_return():
-    """All else first, with the head at home, and a crawl when the grip is gone."""
+def test_an_animal_that_never_left_does_not_return():
+    """All other goals first, with the head at home, then a crawl after the grip is lost."""
     head = course(along((0.0, 0.0), (11.0, 0.0), (12.0, 0.25)))
     centre = course(along((0.0, 0.0), (11.0, 0.0), (12.0, 0.15)))
     grip = np.where(between(4.0, 10.5), 220.0, 0.0)
     samples = with_spans(grip)._replace(head=head, centre=centre)
     assert held(samples) == up_to("return")
-    # and with the grip still there, but the head no longer at home
+    # with the grip kept, but the head no longer at home
     assert held(with_spans(np.where(clock > 4.0, 220.0, 0.0))._replace(head=head, centre=centre)) == up_to("return")
 
 
-# all of them
+# all goals
 
 
 def test_a_goal_holds_only_with_those_before_it():
@@ -266,7 +266,7 @@ def test_episodes_do_not_mix():
     np.testing.assert_array_equal(goals_held(both), np.concatenate([goals_held(good), goals_held(bad)], axis=1))
 
 
-def test_numbers_that_are_not_finite_hold_nothing():
+def test_non_finite_samples_achieve_nothing():
     for name in ("head", "centre", "head_gap", "base", "tilt", "spans"):
         broken = perfect()
         getattr(broken, name)[1:] = np.nan
@@ -278,7 +278,7 @@ def test_numbers_that_are_not_finite_hold_nothing():
 
 
 def test_samples_may_be_finer():
-    """What holds does so whatever the time between samples."""
+    """Goals do not depend on the time between samples."""
     coarse = perfect()
     finer = Samples(*(np.repeat(field, 2, axis=0) for field in coarse))
     finer = finer._replace(time=np.repeat(clock, 2) + np.tile([0.0, 0.5 * DT], clock.size))
@@ -301,7 +301,7 @@ def test_points(goals, total):
     default = np.zeros((5, 5), dtype=bool)
     default[:goals] = True
     assert points(default)["total"] == total
-    # all five initial states have to hold
+    # each goal must be achieved from all five initial states
     default[:goals, 3] = False
     assert points(default)["total"] == 0.0
 
@@ -318,7 +318,7 @@ def test_points_for_targets():
 
 
 def test_the_tasks_bounds_are_the_scorers():
-    """They are written twice, so that no reward decides on points."""
+    """They are defined twice, to keep rewards and points independent."""
     assert (handling.WRAPPED, handling.FEWEST, handling.GRABBING_TIME) == (
         scoring.GRAB,
         scoring.GRAB_COUNT,
