@@ -1,7 +1,7 @@
 """OctopusFetch by script: the octopus walks to its object, bends an arm around it and carries it home.
 
-It is `elastica_gym.scripted.octopus_fetch`, whose tables CMA-ES has found, and adds what that is told by the
-environment: it counts the time, and sees whether the object is grabbed by where the goal is.
+It runs `elastica_gym.scripted.octopus_fetch`, whose tables were found by CMA-ES, without access to the environment: it
+counts the time, and infers from the goal whether the object is grabbed.
 """
 
 import numpy as np
@@ -9,11 +9,11 @@ import numpy as np
 from elastica_gym.scripted.octopus_fetch import act, see
 
 CONTROL_DT = 0.05
-"""From one action to the next [s]"""
+"""Time between actions [s]"""
 THING, GOAL = [148, 150], [206, 207]
-"""Where an observation has, forward and right: the object, and the direction to go"""
+"""Indices in the observation, forward and right, of the object and of the direction to go"""
 
-# memory: the file is run afresh for every episode
+# memory: the file is executed once per episode
 steps = 0
 
 
@@ -26,6 +26,6 @@ def policy(observation: np.ndarray) -> np.ndarray:
 
 
 def has_grabbed(observation: np.ndarray) -> bool:
-    """Return whether the direction to go is not that to the object."""
+    """Return whether the direction to go differs from the direction to the object."""
     to_object = observation[THING] / max(float(np.linalg.norm(observation[THING])), 1e-9)
     return bool(np.abs(observation[GOAL] - to_object).max() > 1e-3)

@@ -31,23 +31,24 @@ class EvaluateArguments:
     pretrained: str | None = None
     """Instead of a run: the name of a policy in agents/pretrained."""
     policy: str | None = None
-    """Instead of a run: zero, random, scripted, seed_gait, the gait.yml that agents.search wrote, or a Python file with
-    a function policy(observation), as scripts/score.py takes it."""
+    """Instead of a run: zero, random, scripted, seed_gait, a gait.yml of agents.search, or a Python file with a
+    function policy(observation), as for scripts/score.py."""
     env: str | None = None
-    """Environment id, before which may stand the module that registers it, as in my_module:my_lab/SnakeTurn-v0; by
-    default the one that the policy was trained or searched on."""
+    """Environment id, optionally with the module that registers it, as in my_module:my_lab/SnakeTurn-v0; by default the
+    one that the policy was trained or searched on."""
     spread: str | None = None
-    """How starts are drawn, for tasks that know several: of OctopusReach arc, anywhere or default."""
+    """Distribution of initial states, for tasks with several: arc, anywhere or default in OctopusReach."""
     episodes: int = 50
-    """How many episodes."""
+    """Number of episodes."""
     seed: int = TEST.start
-    """Seed of the first episode; by default one that nothing is trained or chosen with (`elastica_gym.rl.seeds`)."""
+    """Seed of the first episode; by default a test seed, used neither for training nor for choosing
+    (`elastica_gym.rl.seeds`)."""
     record: Path | None = None
     """Folder for a rerun recording of the first episode."""
     video: Path | None = None
-    """File for a film of the first episode, which ends in .mp4 or .gif."""
+    """File for a film of the first episode, ending in .mp4 or .gif."""
     json: Path | None = None
-    """File for the numbers as JSON: means, each episode, and what they were computed with."""
+    """File for the results as JSON: means, each episode, arguments, machine and versions."""
     threads: int = 2
     """Threads for the physics."""
 
@@ -99,7 +100,7 @@ def main() -> None:
 
 
 def write_json(path: Path, arguments: EvaluateArguments, result: Evaluation, **what: Any) -> None:
-    """Write means, what each episode came to, the arguments, and the machine and versions; say where that is."""
+    """Write means, each episode, arguments, machine and versions as JSON, and print the path."""
     from ..rl import machine
 
     given = {key: str(value) if isinstance(value, Path) else value for key, value in vars(arguments).items()}
@@ -115,7 +116,7 @@ def write_json(path: Path, arguments: EvaluateArguments, result: Evaluation, **w
 
 
 def _without_nan(value: Any) -> Any:
-    """Return what is written as JSON, which has no NaN, with null for each."""
+    """Replace non-finite numbers by None, since JSON has none."""
     if isinstance(value, dict):
         return {key: _without_nan(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
@@ -131,7 +132,7 @@ def _source(arguments: EvaluateArguments) -> "Source":
 
         # a baseline does not look at observations, so it takes them in any form
         choose_environment(arguments.env, goals=arguments.policy in BASELINES)
-    # torch takes seconds to import: not before the arguments are known to be good
+    # torch takes seconds to import: check the arguments first
     from ..rl import policy_sources
 
     if arguments.policy is not None:
@@ -143,7 +144,7 @@ def _source(arguments: EvaluateArguments) -> "Source":
 
 
 def spreads(env_id: str) -> tuple[str, ...]:
-    """Return the ways in which an environment can draw its starts."""
+    """Return the distributions of initial states of an environment."""
     from ..envs import task_of
 
     return tuple(task_of(env_id).initial_states)

@@ -9,10 +9,10 @@ from . import parse
 
 @dataclasses.dataclass
 class PlotArguments:
-    """Plot the mean over several runs of one environment, and the range between the lowest and the highest."""
+    """Plot mean and range over several runs of one environment."""
 
     env: str
-    """Environment id that all runs were trained on."""
+    """Environment id of all runs."""
     runs: list[Path]
     """Folders of the runs."""
     out: Path = Path("learning_curves.png")
@@ -37,7 +37,7 @@ def main() -> None:
             raise BadInputError(f"The run {run} was trained on {trained_on}, not on {arguments.env}.")
         if len(curves.curve_of(run).get("steps", ())) < 2:
             raise BadInputError(
-                f"The run {run} has no curve yet: {METRICS} and {EVALUATIONS} in it have less than two rows."
+                f"The run {run} has no curve yet: its {METRICS} and {EVALUATIONS} have fewer than two rows."
             )
     make_folder(arguments.out.parent)
     figure = curves.plot_runs(arguments.runs)

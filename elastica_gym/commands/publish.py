@@ -17,27 +17,27 @@ if TYPE_CHECKING:
     from ..rl.policies import TrainedPolicy
 
 MACHINE = ("cpu", "kernels", "commit")
-"""What a card says of the machine"""
+"""Fields of the machine on a card"""
 INTERVALS = (
     "Intervals are of 95 %, over episodes, of this one policy. With equal kernels, equal seeds give equal bits. On"
     " another CPU sums are rounded otherwise, and contact amplifies that: the means over these seeds are then within "
     "elsewhere95, which is sqrt(2) times as wide. No interval covers other seeds of training."
 )
-"""What the intervals of a card cover"""
+"""Explanation of the intervals on a card"""
 
 
 @dataclasses.dataclass
 class PublishArguments:
-    """Evaluate a run of agents.train on unseen episodes, and keep its policy with a card that says what it is."""
+    """Evaluate a run of agents.train on unseen episodes, and save its policy with a card."""
 
     name: str
     """Name of the policy: lower case, with snake or octopus in it."""
     run: Path | None = None
-    """Folder of the run; if omitted, a policy that is kept already is scored again, as environments may change."""
+    """Folder of the run; if omitted, a published policy is scored again, for example after environments changed."""
     episodes: int = 100
-    """Episodes of the score."""
+    """Number of episodes of the score."""
     seed: int = TEST.start
-    """Seed of the first of them; training and its evaluations use others."""
+    """Seed of the first episode; training and its evaluations use other seeds."""
     threads: int = 2
     """Threads for the physics."""
     out: Path = PRETRAINED
@@ -51,7 +51,7 @@ def main() -> None:
     arguments = parse("publish", PublishArguments, "--name snake_forward_ppo --run runs/SnakeForward-v1/RUN")
     if not re.fullmatch(r"[a-z0-9_]*(snake|octopus)[a-z0-9_]*", arguments.name):
         raise BadInputError(
-            f"name must be of lower-case letters, digits and _, with snake or octopus in it, got {arguments.name!r}"
+            f"name must be lower-case letters, digits and _, with snake or octopus in it, got {arguments.name!r}"
         )
     make_folder(arguments.out)
     for path in _score_again(arguments) if arguments.run is None else _publish(arguments, arguments.run):
@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def _publish(arguments: PublishArguments, run: Path) -> list[Path]:
-    """Score the policy of a run and write it with its card; return the files."""
+    """Score the policy of a run, write it with its card, and return the files."""
     from ..rl.cards import write_pretrained
     from ..rl.policies import load_run
 
@@ -70,7 +70,7 @@ def _publish(arguments: PublishArguments, run: Path) -> list[Path]:
 
 
 def _score_again(arguments: PublishArguments) -> list[Path]:
-    """Score a policy that is kept already, and write the score into its card; return its file."""
+    """Score a published policy again, update its card, and return the card's path."""
     from ..rl.cards import load_pretrained, write_card
 
     policy, card = load_pretrained(arguments.name, arguments.out)
@@ -99,7 +99,7 @@ def _evaluate(
 
 
 def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "Evaluation") -> dict[str, Any]:
-    """Return what the card says."""
+    """Return the contents of the card."""
     from ..rl.cards import command_of
     from ..rl.run_files import BEST, EVALUATIONS, METRICS, read_table
 
@@ -123,7 +123,7 @@ def card_of(name: str, run: Path, config: dict[str, Any], steps: int, result: "E
 
 
 def score_of(name: str, result: "Evaluation") -> dict[str, Any]:
-    """Return what the card says of an evaluation."""
+    """Return the fields of the card about an evaluation."""
     summary, scored = result.summary(), machine.describe()
     scores = (
         "episodes",
@@ -146,7 +146,7 @@ def score_of(name: str, result: "Evaluation") -> dict[str, Any]:
 
 
 def _rounded(value: Any) -> Any:
-    """Return a score with four digits after the point."""
+    """Round a score to four decimals."""
     if isinstance(value, dict):
         return {key: _rounded(each) for key, each in value.items()}
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Search a gait by CMA-ES: ``python -m agents.search --env elastica_gym/SnakeForward-v1``."""
+"""Search for a gait by CMA-ES: ``python -m agents.search --env elastica_gym/SnakeForward-v1``."""
 
 import dataclasses
 import time
@@ -21,38 +21,38 @@ from . import invocation, parse
 
 @dataclasses.dataclass
 class SearchArguments:
-    """Search the parameters of a gait by the covariance matrix adaptation evolution strategy (CMA-ES).
+    """Optimise the parameters of a gait by the covariance matrix adaptation evolution strategy (CMA-ES).
 
-    On SnakeForward these are the seven of the snake's published gait: six coefficients of a spline and the wave length.
-    Every candidate is an environment of one batch, and all of a generation have the same starts. What the search leaves
-    behind is in runs/<id>/search-<seed>-<time>/.
+    On SnakeForward these are the seven of the snake's published gait: six spline coefficients and the wave length.
+    Candidates of a generation run in one batch from the same initial states. Results are written to
+    runs/<id>/search-<seed>-<time>/.
     """
 
     env: str = "elastica_gym/SnakeForward-v1"
     """Environment id."""
     gait: Literal["wave", "steered_wave", "stroke"] | None = None
-    """The family of gaits: the snake's published wave; one that also has a period and bends towards the goal; or the
-    octopus's stroke. By default the wave on SnakeForward, and on the others what can reach a goal."""
+    """The family of gaits: the snake's published wave; a wave that also has a period and bends towards the goal; or the
+    octopus's stroke. By default the wave on SnakeForward, and elsewhere the one that can reach a goal."""
     seed: int = 0
-    """Seed of the search, below 2**32; the seeds of its starts are derived from it (`elastica_gym.rl.seeds`)."""
+    """Seed of the search, below 2**32; the seeds of initial states are derived from it (`elastica_gym.rl.seeds`)."""
     evaluations: int | None = None
-    """Candidates to evaluate, over all restarts; by default 6,000, or no limit if minutes are given."""
+    """Candidates to evaluate over all restarts; by default 6,000, or no limit if minutes are given."""
     minutes: float | None = None
     """Wall-clock budget."""
     restarts: int = 3
-    """How often the search begins anew, from other gaits; each has an equal part of the budget."""
+    """Number of restarts from other gaits; the budget is divided equally."""
     population: int = 20
-    """Candidates in a generation."""
+    """Candidates per generation."""
     threads: int = 2
     """Threads for the physics; results do not depend on them."""
     evaluation_episodes: int = 20
-    """Episodes on which the best of the candidates, and the best in the end, are chosen."""
+    """Number of episodes for choosing the best gait, during and at the end of the search."""
     evaluation_seed: int = VALIDATION.start
-    """Seed of the first of them."""
+    """Seed of the first of these episodes."""
     out: Path = Path("runs")
     """Folder of all runs."""
     folder: Path | None = None
-    """Folder of this search, instead of one in `out` named by id, seed and time."""
+    """Folder of this search, instead of one in `out` named after id, seed and time."""
 
 
 LOWEST = {
@@ -77,14 +77,14 @@ def main() -> None:
     from ..progress import Bar
 
     with Bar("starting"):
-        # Stable-Baselines3 takes seconds to import: not before the arguments are known to be good
+        # Stable-Baselines3 takes seconds to import: check the arguments first
         import yaml
 
         from ..rl.cmaes import Search
 
         search = Search(folder, config)
     (folder / "search.yml").write_text(yaml.safe_dump(config, sort_keys=False))
-    print(f"Searching {search.gait.name}, {len(search.gait.parameters)} numbers, on {config['env']}, into {folder}")
+    print(f"Searching {search.gait.name}, {len(search.gait.parameters)} parameters, on {config['env']}, into {folder}")
     try:
         search.run()
     except KeyboardInterrupt:
@@ -95,7 +95,7 @@ def main() -> None:
 
 
 def _started(arguments: SearchArguments) -> tuple[Path, dict[str, Any]]:
-    """Check the arguments and make the folder; return that and what goes into its search.yml."""
+    """Check the arguments, create the folder, and return it with the contents of its search.yml."""
     choose_environment(arguments.env)
     config = {key: value for key, value in dataclasses.asdict(arguments).items() if key not in ("out", "folder")}
     if arguments.evaluations is arguments.minutes is None:
@@ -107,5 +107,5 @@ def _started(arguments: SearchArguments) -> tuple[Path, dict[str, Any]]:
     name = f"search-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
     folder = arguments.folder or arguments.out / arguments.env.rpartition("/")[2] / name
     if (folder / SEARCH).exists():
-        raise BadInputError(f"The folder {folder} has a search already: use another.")
+        raise BadInputError(f"The folder {folder} already has a search: use another.")
     return make_folder(folder), config

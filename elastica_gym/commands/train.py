@@ -22,11 +22,11 @@ from . import invocation, parse
 class TrainArguments:
     """Train an agent with Stable-Baselines3.
 
-    Hyperparameters come from configs/<algo>.yml. What the run leaves behind is in runs/<id>/<algo>-<seed>-<time>/.
+    Hyperparameters come from configs/<algo>.yml. Results are written to runs/<id>/<algo>-<seed>-<time>/.
     """
 
     env: str = "elastica_gym/SnakeForward-v1"
-    """Environment id, before which may stand the module that registers it, as in my_module:my_lab/SnakeTurn-v0."""
+    """Environment id, optionally with the module that registers it, as in my_module:my_lab/SnakeTurn-v0."""
     algo: str = "ppo"
     """Algorithm: ppo or sac."""
     seed: int = 0
@@ -34,27 +34,27 @@ class TrainArguments:
     steps: int | None = None
     """Environment steps to train for; by default n_timesteps of the configuration, or no limit if minutes are given."""
     minutes: float | None = None
-    """Wall-clock budget of training and its evaluations; schedules follow the part of it that is left."""
+    """Wall-clock budget of training and its evaluations; schedules follow its remaining fraction."""
     n_envs: int | None = None
-    """Environments in the batch, instead of the configuration's."""
+    """Number of environments in the batch, instead of the configuration's."""
     set: list[str] = dataclasses.field(default_factory=list)
-    """Hyperparameters to go before the configuration's, as KEY=VALUE, such as learning_rate=0.0005 gamma=0.99."""
+    """Hyperparameters that override the configuration's, as KEY=VALUE, such as learning_rate=0.0005 gamma=0.99."""
     config: Path | None = None
     """Another configuration file of the same format."""
     start_from: str | None = None
-    """Folder of a run, or name of a pretrained policy, of the same algorithm to begin with its networks, as of an
-    easier task of the same animal."""
+    """Folder of a run, or name of a pretrained policy, whose networks to start from; of the same algorithm, for example
+    from an easier task of the same animal."""
     imitate: int = 0
-    """Environment steps in which the networks first learn to do as the task's scripted policy does; not counted in
-    `steps`, which may be 0, but in the minutes."""
+    """Environment steps of imitating the task's scripted policy first; they count towards the minutes, but not towards
+    `steps`, which may be 0."""
     threads: int = 2
     """Threads for the physics; results do not depend on them."""
     evaluations: int = 10
-    """Evaluation points besides the one at the start, spread evenly over the budget; 0 for none at all."""
+    """Number of evaluations after the one at the start, spread evenly over the budget; 0 for none at all."""
     evaluation_episodes: int = 20
-    """Episodes of each evaluation."""
+    """Episodes per evaluation."""
     evaluation_seed: int = VALIDATION.start
-    """Seed of an evaluation's first episode, not one of those to train or to test with (`elastica_gym.rl.seeds`)."""
+    """Seed of an evaluation's first episode; separate from training and test seeds (`elastica_gym.rl.seeds`)."""
     recordings: int = 1
     """Evaluation episodes recorded for rerun at the end."""
     checkpoint_minutes: float = 1.0
@@ -62,9 +62,9 @@ class TrainArguments:
     out: Path = Path("runs")
     """Folder of all runs."""
     folder: Path | None = None
-    """Folder of this run, instead of one in `out` named by id, algorithm, seed and time."""
+    """Folder of this run, instead of one in `out` named after id, algorithm, seed and time."""
     resume: Path | None = None
-    """Folder of a run to continue from its last whole checkpoint; of the other options only steps and minutes count."""
+    """Folder of a run to continue from its last intact checkpoint; of other options only steps and minutes apply."""
 
 
 def main() -> None:
@@ -83,14 +83,14 @@ def main() -> None:
 
     with Bar("starting"):
         folder, config = _resumed(arguments) if arguments.resume else _started(arguments)
-        # torch takes seconds to import: not before the arguments are known to be good
+        # torch takes seconds to import: check the arguments first
         import yaml
 
         from ..files import write_atomically
         from ..rl.training import Training
 
         training = Training(folder, config, resume=arguments.resume is not None)
-    # what the environment or the algorithm refuses does not get this far, and leaves the folder free
+    # written after setup, so that refused arguments leave the folder free
     text = yaml.safe_dump(config, sort_keys=False)
     write_atomically(folder / "config.yml", lambda path: path.write_text(text))
     print(f"Training {config['algo']} on {config['env']}, seed {config['seed']}, into {folder}")
@@ -101,14 +101,14 @@ def main() -> None:
             "interrupted" if isinstance(error, KeyboardInterrupt) else f"{error.strerror}: {error.filename or folder}"
         )
         kept = training.last_checkpoint
-        hint = f". The checkpoint {kept} is whole; continue with: {_resume_command(folder)}" if kept else ""
+        hint = f". The checkpoint {kept} is intact; continue with: {_resume_command(folder)}" if kept else ""
         fail(what + hint, status=130 if what == "interrupted" else 1)
     if not finished:
         print(f"Saved. Continue with: {_resume_command(folder)}")
         raise SystemExit(130)
     print(f"Finished. Model, metrics.csv, learning_curve.png and recordings are in {folder}")
     if (folder / BEST).exists():
-        print(f"The model that evaluated best on the way is in {folder / BEST}")
+        print(f"The model with the best evaluation is in {folder / BEST}")
     print(f"Evaluate it with: {invocation('evaluate')} --run {folder}")
 
 
@@ -117,7 +117,7 @@ def _resume_command(folder: Path) -> str:
 
 
 def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
-    """Check the arguments of a new run and make its folder; return that and what goes into its config.yml."""
+    """Check the arguments of a new run, create its folder, and return it with the contents of its config.yml."""
     from ..rl import hyperparameters, machine
 
     choose_environment(arguments.env)
@@ -136,20 +136,20 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     _check(config)
     folder = arguments.folder or _new_folder(arguments)
     if (folder / "config.yml").exists():
-        raise BadInputError(f"The folder {folder} has a run already: use another, or {_resume_command(folder)}")
+        raise BadInputError(f"The folder {folder} already has a run: use another, or {_resume_command(folder)}")
     return make_folder(folder), config
 
 
 def _start(start: str | None) -> str | None:
-    """Return the name of a pretrained policy as it is, and the whole path of a run."""
+    """Return the name of a pretrained policy unchanged, and a run as its absolute path."""
     from ..rl.cards import names
 
     if start is None or start in names():
         return start
     if not Path(start).is_dir():
         raise BadInputError(
-            f"--start-from {start} is neither the folder of a run nor a pretrained policy, "
-            f"of which there are: {', '.join(names())}"
+            f"--start-from {start} is neither the folder of a run nor a pretrained policy. "
+            f"Pretrained policies: {', '.join(names())}"
         )
     return str(Path(start).resolve())
 
@@ -158,13 +158,13 @@ _NOT_IN_CONFIG = {"set", "n_envs", "out", "folder", "resume"}
 
 
 def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
-    """Read the config.yml of a run, with the budget that the arguments may extend."""
+    """Read the config.yml of a run, with the budget of the arguments, if given."""
     from ..rl import hyperparameters
     from ..rl.policies import read_config
 
     assert arguments.resume is not None
     config = read_config(arguments.resume)
-    # a file, which may have been edited
+    # checked again, since the file may have been edited
     config["hyperparameters"] = hyperparameters.checked(config["algo"], config["hyperparameters"])
     if arguments.steps is not None or arguments.minutes is not None:
         config |= {"steps": arguments.steps, "minutes": arguments.minutes}

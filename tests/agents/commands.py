@@ -1,4 +1,4 @@
-"""The commands as a user runs them, in a process of their own."""
+"""The commands as a user runs them, in a separate process."""
 
 import os
 import subprocess
@@ -20,12 +20,12 @@ def arguments(module: str, *args: str | Path) -> list[str]:
 
 
 def environment() -> dict[str, str]:
-    """Return environment variables with which the commands find this repository."""
+    """Return environment variables that let the commands find this repository."""
     return {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "200"}
 
 
 def run(module: str, *args: str | Path, status: int = 0, **options: object) -> str:
-    """Run a module of agents to its end, and return what it printed."""
+    """Run a module of agents to its end, and return its output."""
     done = subprocess.run(
         arguments(module, *args), env=environment(), cwd=ROOT, capture_output=True, text=True, timeout=400, **options
     )  # type: ignore[call-overload]

@@ -1,4 +1,4 @@
-"""What users get wrong: one line that names it and says what would do, a status that is not 0, nothing lost."""
+"""Bad input gives one line with the cause and the allowed values, and a non-zero status; nothing is lost."""
 
 import importlib.metadata
 import resource
@@ -80,7 +80,7 @@ def test_unknown_hyperparameter():
         (("--evaluation-seed", "1999981"), "evaluation_seed must be from 1000000 to 1999980, got 1999981: 20 seeds"),
     ],
 )
-def test_values_that_cannot_be(option, message, tmp_path):
+def test_bad_training_options(option, message, tmp_path):
     folder = tmp_path / "run"
     assert message in refused("agents.train", "--folder", folder, *option)
     assert not list(folder.glob("*"))  # the same folder can be used again
@@ -95,7 +95,7 @@ def test_values_that_cannot_be(option, message, tmp_path):
         (("--episodes", 0), "episodes must be at least 1, got 0"),
     ],
 )
-def test_evaluations_that_cannot_be(option, message):
+def test_bad_evaluation_options(option, message):
     assert message in refused("agents.evaluate", "--policy", "zero", "--env", FORWARD, *option)
 
 
@@ -107,7 +107,7 @@ def test_evaluations_that_cannot_be(option, message):
         (("--env", FORWARD, "--sim-dt", 1.0), "The environment refuses its arguments: sim_dt"),
     ],
 )
-def test_divergences_that_cannot_be_counted(option, message):
+def test_bad_options_of_count_divergence(option, message):
     assert message in refused("scripts.count_divergence", *option)
 
 
@@ -131,9 +131,9 @@ def test_divergences_that_cannot_be_counted(option, message):
         (("scripts.score", "--policy", "nowhere.py"), "There is no policy nowhere.py"),
     ],
 )
-def test_scripts_refuse_in_one_line_what_cannot_be(command, message, tmp_path):
+def test_scripts_refuse_bad_options_in_one_line(command, message, tmp_path):
     module, *options = command
-    # what writes somewhere unless told otherwise must not write into the repository
+    # commands with a default output must not write into the repository
     out = ("--out", tmp_path) if module.rpartition(".")[2] in ("make_table", "quickstart", "starter_kit") else ()
     out = ("--folder", tmp_path) if module == "agents.search" else out
     out = ("--out", tmp_path / "gait.yml") if module == "scripts.search_carrying" else out
@@ -174,7 +174,7 @@ importlib.metadata.version = version
 sys.argv = sys.argv[1:]
 runpy.run_path(sys.argv[0], run_name="__main__")
 """
-"""Runs a program where the packages of the extra train are not"""
+"""Runs a program without the packages of the extra train"""
 
 
 @pytest.mark.parametrize(
@@ -208,7 +208,7 @@ def test_old_packages(monkeypatch):
 
 
 def test_more_than_fits_into_memory(tmp_path):
-    # more than a process can address, whatever the system promises
+    # more than a process can address, even with overcommit
     huge = "--n-envs", 1024, "--set", "n_steps=1000000000"
     output = refused("agents.train", "--folder", tmp_path, *huge, status=1)
     assert "error: not enough memory: " in output
@@ -222,12 +222,12 @@ def test_unwritable_folder():
 
 def test_a_run_is_not_overwritten(finished):
     before = (finished / "model.zip").read_bytes()
-    assert "has a run already" in refused("agents.train", "--folder", finished)
+    assert "already has a run" in refused("agents.train", "--folder", finished)
     assert (finished / "model.zip").read_bytes() == before
 
 
 def test_full_disk_keeps_the_last_checkpoint(finished):
-    """A limit on the size of files stands for the disk: what does not fit is refused in the middle of a write."""
+    """A limit on file size simulates the full disk: a write fails midway."""
     before = checkpoint_folders(finished / "checkpoints")
 
     def limit() -> None:

@@ -41,7 +41,7 @@ def test_an_episode_depends_on_its_seed_alone(env_id, policy, monkeypatch):
         np.testing.assert_array_equal(values[2:4], per_episode(later)[name])
 
 
-def test_evaluation_is_what_the_single_environment_does():
+def test_evaluation_equals_the_single_environment():
     result = evaluate(policies.baseline("zero"), FORWARD, episodes=2, seed=4, env_kwargs=SHORT)
     env = gymnasium.make(FORWARD, **SHORT)
     for i, seed in enumerate((4, 5)):
@@ -78,8 +78,8 @@ def test_a_model_of_another_environment_is_refused():
         evaluate(untrained(REACH), FORWARD, episodes=1, seed=0, env_kwargs=SHORT)
 
 
-def test_where_the_means_are_on_another_cpu():
-    """Of two means over as many independent episodes, one is so near to the other 95 times in 100."""
+def test_prediction_intervals_for_another_cpu():
+    """A second mean over equally many independent episodes is in the interval in 95 % of cases."""
     rng, reasons = np.random.default_rng(0), np.full(100, "time_limit", dtype=object)
     inside = {"return": 0, "distance": 0, "success": 0}
     for _ in range(400):
@@ -93,7 +93,7 @@ def test_where_the_means_are_on_another_cpu():
         assert 0.92 * 400 <= count <= 0.98 * 400, name
 
 
-def test_json_has_every_episode_and_what_it_was_computed_with(tmp_path):
+def test_json_has_every_episode_and_its_provenance(tmp_path):
     path = tmp_path / "new" / "numbers.json"
     options = "--episodes", 3, "--seed", 7, "--threads", 1, "--json", path
     output = run("agents.evaluate", "--policy", "random", "--env", FORWARD, *options)
@@ -118,7 +118,7 @@ def test_json_has_every_episode_and_what_it_was_computed_with(tmp_path):
 
 def test_a_film_of_any_policy(offscreen, tmp_path):
     path = tmp_path / "new" / "film.mp4"
-    # an episode that soon ends with success
+    # an episode that soon succeeds
     which = "--pretrained", "octopus_reach_ppo", "--spread", "arc"
     output = run("agents.evaluate", *which, "--episodes", 1, "--video", path)
     assert f"filmed {path} (" in output and "drawing" in output and "\r" not in output
@@ -130,7 +130,7 @@ def test_a_film_of_any_policy(offscreen, tmp_path):
         assert picture.size == (64, 48) and picture.n_frames == 6 and picture.info["duration"] == 200
 
 
-def test_films_that_cannot_be(tmp_path):
+def test_bad_film_options(tmp_path):
     bad = "--policy", "zero", "--env", FORWARD, "--video"
     assert "Unknown kind of film '.mp5'; did you mean '.mp4'" in refused("agents.evaluate", *bad, tmp_path / "a.mp5")
     assert "Cannot write into the folder /proc/films" in refused("agents.evaluate", *bad, "/proc/films/a.mp4")
@@ -139,7 +139,7 @@ def test_films_that_cannot_be(tmp_path):
             check_film(tmp_path / "a.mp4", size)
 
 
-def test_where_nothing_can_draw_the_message_says_what_to_install(tmp_path, monkeypatch):
+def test_without_a_renderer_the_message_says_what_to_install(tmp_path, monkeypatch):
     def nothing(*_, **__):
         raise RuntimeError("MuJoCo cannot draw offscreen (MUJOCO_GL=): neither EGL nor OSMesa is installed")
 

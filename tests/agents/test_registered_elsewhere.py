@@ -1,4 +1,4 @@
-"""The commands take tasks that are registered elsewhere, and policies that are Python files."""
+"""The commands accept tasks registered elsewhere, and policies in Python files."""
 
 import json
 
@@ -29,7 +29,7 @@ def policy(observation):
     ("env_id", "term"), [(f"{MODULE}:{TOY}", "away"), (f"tests.envs.tentacle_reach:{TENTACLE}", "approach")]
 )
 def test_a_task_from_elsewhere_is_trained_evaluated_and_recorded(tmp_path, env_id, term):
-    """For an animal of the package, and for one from elsewhere."""
+    """With an animal of the package, and with one from elsewhere."""
     folder = tmp_path / "run"
     run("agents.train", "--env", env_id, "--steps", 40, "--imitate", 40, "--folder", folder, *SMALL_PPO)
     output = run("agents.evaluate", "--run", folder, "--episodes", 2, "--record", tmp_path / "seen")
@@ -45,7 +45,7 @@ def test_an_id_without_the_module_that_registers_it_is_unknown():
 
 
 @pytest.mark.parametrize("name", BASELINES)
-def test_policies_that_do_not_look_at_observations_are_evaluated_on_goals(name):
+def test_policies_that_ignore_observations_are_evaluated_on_goals(name):
     assert choose_environment(TOY_GOAL, goals=True) == TOY_GOAL
     result = evaluate(baseline(name), TOY_GOAL, episodes=2, seed=0, env_kwargs={"duration": 0.5})
     assert set(result.terms) == {"reached", "diverged"}
@@ -54,7 +54,7 @@ def test_policies_that_do_not_look_at_observations_are_evaluated_on_goals(name):
 @pytest.mark.parametrize(
     ("module", "arguments"), [("agents.train", ()), ("agents.evaluate", ("--pretrained", "snake_reach_ppo"))]
 )
-def test_commands_that_cannot_take_goals_say_how_to_train_on_them(module, arguments):
+def test_commands_without_support_for_goals_say_how_to_train_on_them(module, arguments):
     message = refused(module, "--env", "elastica_gym/SnakeReachGoal-v1", *arguments)
     assert "hindsight experience replay, as the docstring of elastica_gym.envs.goal shows" in message
 
@@ -70,7 +70,7 @@ def test_a_python_file_is_evaluated(tmp_path):
     assert forced["terms"]["effort"] < json.loads(numbers.read_text())["terms"]["effort"] == 0.0
 
 
-def test_files_that_are_no_policies(tmp_path):
+def test_files_that_are_not_policies(tmp_path):
     file = tmp_path / "mine.py"
     assert f"There is no policy file {file}" in refused("agents.evaluate", "--policy", file, "--env", FORWARD)
     file.write_text("x = 1")

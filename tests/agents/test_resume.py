@@ -1,4 +1,4 @@
-"""A run that was interrupted, killed, and whose last checkpoint the disk damaged ends as if nothing had happened."""
+"""A run that was interrupted, killed and lost its last checkpoint ends bit-identical to an undisturbed one."""
 
 import csv
 import signal
@@ -18,7 +18,7 @@ ARGS = ("--steps", STEPS, "--checkpoint-minutes", 0, *SMALL_PPO)
 
 
 def run_until(checkpoints: int, sign: int, folder: Path, *args: str | Path) -> tuple[int, str]:
-    """Send a signal to agents.train when the run has that many new checkpoints; return its status and output."""
+    """Send a signal to agents.train after that many new checkpoints; return its status and output."""
     seen = set(checkpoint_folders(folder / "checkpoints"))
     process = subprocess.Popen(
         arguments("agents.train", *args),

@@ -1,4 +1,4 @@
-"""Gaits that a few numbers describe, and the search for the best of them."""
+"""Families of gaits, and the search for the best of them."""
 
 import json
 from types import SimpleNamespace
@@ -27,7 +27,7 @@ def starts(gait: gaits.Gait) -> np.ndarray:
 
 
 def standing(body, angles, *, elapsed=7):
-    """A batch as gaits see it, with its goals at these angles, and its observations."""
+    """A batch, as used by gaits, with its goals at these angles, and its observations."""
     batch = SimpleNamespace(
         body=body,
         num_envs=len(angles),
@@ -47,7 +47,7 @@ def test_the_wave_begins_as_the_published_gait():
 
 
 @pytest.mark.parametrize("name", ["wave", "steered_wave"])
-def test_candidates_share_a_batch_but_not_their_fate(name):
+def test_candidates_in_a_batch_are_independent(name):
     gait, env_id, seeds = gaits.GAITS[name], REACH, [5, 9]
     spreads = [parameter.spread for parameter in gait.parameters]
     two = starts(gait) + 0.5 * np.random.default_rng(0).uniform(-1.0, 1.0, (2, len(spreads))) * spreads
@@ -79,7 +79,7 @@ def test_a_steered_wave_bends_towards_the_goal():
 def test_the_arms_strokes_are_mirror_images():
     values = starts(gaits.STROKE) + np.random.default_rng(0).normal(0.0, 0.3, len(gaits.STROKE.parameters))
     values[0] = 0.8
-    # ahead to the right, and its mirror image: behind to the right
+    # ahead to the right, and its mirror image, behind to the right
     batch, seen = standing(octopus(), np.array([0.4, np.pi - 0.4, -0.4]))
     policy = gaits.GaitPolicy(gaits.STROKE, values)
     policy.reset([0])
@@ -90,7 +90,7 @@ def test_the_arms_strokes_are_mirror_images():
 
 
 def searched_for(folder, target, monkeypatch, *, evaluations=2000):
-    """Search with an objective that is largest, 0, at a target in units of the parameters' spreads."""
+    """Search with an objective whose maximum, 0, is at a target in units of the parameters' spreads."""
     config = {
         "env": FORWARD,
         "gait": None,
@@ -117,7 +117,7 @@ def searched_for(folder, target, monkeypatch, *, evaluations=2000):
     return search, gaits.load_gait(folder / GAIT)[0].values[0], spreads
 
 
-def test_the_search_finds_the_top_of_a_hill(tmp_path, monkeypatch):
+def test_the_search_finds_the_maximum(tmp_path, monkeypatch):
     target = np.array([1.0, -1.0, 0.5, 0.0, -0.5, 1.0, -0.8])
     search, found, spreads = searched_for(tmp_path, target, monkeypatch)
     np.testing.assert_allclose((found - starts(gaits.WAVE)) / spreads, target, atol=0.01)
@@ -127,7 +127,7 @@ def test_the_search_finds_the_top_of_a_hill(tmp_path, monkeypatch):
     assert np.all(np.diff(table["best_so_far"][np.isfinite(table["best_so_far"])]) >= 0.0)
 
 
-def test_the_table_ends_with_what_the_last_trial_found(tmp_path, monkeypatch):
+def test_the_table_ends_with_the_result_of_the_last_trial(tmp_path, monkeypatch):
     search, _, _ = searched_for(tmp_path, np.full(7, 0.5), monkeypatch, evaluations=20)
     assert read_table(tmp_path / SEARCH)["best_so_far"].tolist() == [pytest.approx(search.best, rel=1e-5)]
 
@@ -147,11 +147,11 @@ def test_the_command_searches_and_its_gait_is_evaluated(tmp_path):
     assert evaluated["env"] == FORWARD
     assert evaluated["distance_mean"] == pytest.approx(found["score"]["distance_mean"], abs=1e-12)
     assert 0.0 < evaluated["distance_mean"] < 1.0
-    assert "has a search already" in refused("agents.search", "--folder", folder)
+    assert "already has a search" in refused("agents.search", "--folder", folder)
 
 
 @pytest.mark.parametrize("path", sorted(SEARCHED.glob("*.yml")), ids=lambda path: path.stem)
-def test_shipped_gaits_do_what_their_files_say(path):
+def test_shipped_gaits_match_their_files(path):
     policy, env_id = gaits.load_gait(path)
     score = yaml.safe_load(path.read_text())["score"]
     result = evaluate(policy, env_id, episodes=2, seed=3_000_000)
@@ -164,7 +164,7 @@ def test_the_shipped_snake_beats_the_shipped_gait():
     assert learned > 1.2 * found > 0.48
 
 
-def test_what_cannot_be_searched(tmp_path):
+def test_bad_searches_are_refused(tmp_path):
     assert "The gait 'stroke' is of the octopus" in refused("agents.search", "--gait", "stroke", "--out", tmp_path)
     assert "population must be at least 4, got 1" in refused("agents.search", "--population", 1, "--out", tmp_path)
 
@@ -177,7 +177,7 @@ def test_what_cannot_be_searched(tmp_path):
         (f"{{env: {FORWARD}, gait: wave, parameters: {{coefficient_0: 1}}}}", "needs a number for each of"),
     ],
 )
-def test_files_that_are_no_gaits(tmp_path, content, message):
+def test_files_that_are_not_gaits(tmp_path, content, message):
     (tmp_path / GAIT).write_text(content)
     with pytest.raises(BadInputError, match=message):
         gaits.load_gait(tmp_path / GAIT)

@@ -1,4 +1,4 @@
-"""The search of how the scripted octopus carries its object home."""
+"""The search for the gait with which the scripted octopus carries its object home."""
 
 import subprocess
 import sys
@@ -28,7 +28,7 @@ def make(n: int):
     return gymnasium.make_vec(RETURN, num_envs=n, duration=1.0, autoreset_mode=AutoresetMode.DISABLED).unwrapped
 
 
-def test_numbers_of_a_gait_make_it_again(script):
+def test_a_gait_is_restored_from_its_numbers(script):
     gait = HOMEWARD
     again = script.gait_of(script.numbers_of(gait))
     np.testing.assert_array_equal(script.numbers_of(again), script.numbers_of(gait))
@@ -36,7 +36,7 @@ def test_numbers_of_a_gait_make_it_again(script):
 
 
 def test_trials_begin_where_environments_were(script):
-    """Put together in another order and number, they go on bit for bit."""
+    """Combined in another order and number, they continue bit for bit."""
     batch, other = make(3), make(4)
     batch.reset(seed=5)
     other.reset(seed=9)
@@ -49,8 +49,8 @@ def test_trials_begin_where_environments_were(script):
     np.testing.assert_array_equal(theirs, mine[order])
 
 
-def test_the_first_arm_carries_in_the_mirror():
-    """Ahead is behind for it, and each arm's activations are the other's; the last way is no hurried one."""
+def test_the_first_arm_carries_as_the_mirror_image():
+    """Ahead and behind are exchanged, and so are the arms' activations; the last direction uses a slow gait."""
     way = np.array([[0.3, -0.4], [-0.1, -0.5], [0.2, 0.3]])
     time = np.array([0.1, 0.75, 1.3])
     second = carry(way, time, np.ones(3, dtype=np.int64))

@@ -1,4 +1,4 @@
-"""The benchmark table: its statistics, and the command that makes it cell by cell."""
+"""The benchmark table: its statistics, and the command that computes it cell by cell."""
 
 import importlib.util
 import json
@@ -37,7 +37,7 @@ def test_intervals_cover_the_truth_and_grow_with_the_difference_between_seeds():
     same = rng.normal(1.0, 0.5, (3, 100))
     low, high = make_table.bootstrap_interval(same)
     assert low < make_table.interquartile_mean(same.ravel()) < high
-    # the error of an interquartile mean of 300 normal draws is 1.1 times that of the mean
+    # the standard error of an interquartile mean of 300 normal draws is 1.1 times that of the mean
     assert 0.06 < high - low < 0.2
     apart = same + np.array([[-1.0], [0.0], [1.0]])
     wide_low, wide_high = make_table.bootstrap_interval(apart)
@@ -62,8 +62,8 @@ def test_cells():
     assert [cell.name for cell in few] == ["SnakeReach-v1-zero-0", "SnakeReach-v1-sac-0", "SnakeReach-v1-sac-1"]
 
 
-def test_the_table_is_made_cell_by_cell(tmp_path):
-    """In a few seconds of training, after a kill in the middle of one, which leaves a folder without a result."""
+def test_the_table_is_computed_cell_by_cell(tmp_path):
+    """With a few seconds of training, after a kill during a cell, which leaves a folder without a result."""
     cells = tmp_path / "cells"
     killed = cells / "SnakeForward-v1-ppo-0"
     killed.mkdir(parents=True)

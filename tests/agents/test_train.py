@@ -43,7 +43,7 @@ def ppo_run(tmp_path_factory):
     return folder
 
 
-def test_a_run_leaves_what_it_should(ppo_run):
+def test_a_run_writes_its_files(ppo_run):
     names = {path.name for path in ppo_run.iterdir()}
     assert names == {
         "config.yml",
@@ -76,14 +76,14 @@ def test_tables_of_a_run(ppo_run):
     assert [int(row["steps"]) for row in evaluations] == [0, 200]
 
 
-def test_the_model_that_evaluated_best_is_kept(ppo_run):
+def test_the_model_with_the_best_evaluation_is_kept(ppo_run):
     evaluations = list(csv.DictReader((ppo_run / "evaluations.csv").open()))
     best, config = load_run(ppo_run / "best")
     assert best.model.num_timesteps == int(max(evaluations, key=lambda row: float(row["return"]))["steps"])
     assert config == load_run(ppo_run)[1]
 
 
-def test_the_loop_does_what_stable_baselines3_does(ppo_run):
+def test_the_loop_equals_that_of_stable_baselines3(ppo_run):
     values = yaml.safe_load((ppo_run / "config.yml").read_text())["hyperparameters"]
     env = VecNormalize(
         make_batch_vec_env(FORWARD, n_envs=2, **values["env_kwargs"]), **hyperparameters.normalize_arguments(values)
@@ -111,7 +111,7 @@ def test_curves_of_several_runs(ppo_run, tmp_path):
 
 
 def test_a_run_starts_from_the_networks_of_another(ppo_run, tmp_path):
-    # a step of no length: what is saved is what it began with
+    # with learning rate zero, the saved networks are the initial ones
     run(
         "agents.train",
         "--env",
@@ -164,7 +164,7 @@ def test_a_run_starts_from_a_pretrained_policy(tmp_path):
     weights = begun.model.policy.state_dict()
     for name, value in theirs.model.policy.state_dict().items():
         assert torch.equal(value, weights[name]) == (name != "log_std"), name
-    # those that it has seen, and forty more
+    # those of its training, and forty more
     assert begun.normalization.obs_rms.count >= read_card("snake_reach_ppo")["steps"] + 40
     np.testing.assert_allclose(begun.normalization.obs_rms.mean, theirs.normalization.mean, atol=1e-3)
     config = yaml.safe_load((tmp_path / "next" / "config.yml").read_text())
@@ -183,7 +183,7 @@ def test_a_run_starts_from_a_pretrained_policy(tmp_path):
     assert "snake_rech_ppo is neither" in output and "snake_reach_ppo" in output
 
 
-def test_what_a_run_sees_more_than_the_one_it_starts_from_counts_for_nothing_at_first(ppo_run, tmp_path):
+def test_new_observations_have_no_effect_at_first(ppo_run, tmp_path):
     run(
         "agents.train",
         "--env",
@@ -207,7 +207,7 @@ def test_what_a_run_sees_more_than_the_one_it_starts_from_counts_for_nothing_at_
     np.testing.assert_allclose(begun.model.predict(seen, deterministic=True)[0], actions, atol=1e-6)
 
 
-def test_statistics_of_what_was_not_seen_before():
+def test_statistics_of_new_observations():
     known = RunningMeanStd(shape=(2,))
     known.mean[:], known.var[:], known.count = [1.0, 2.0], [3.0, 4.0], 1e6
     wide = transfer.statistics(known, 3, transfer.places(["a", "c"], ["a", "b", "c"]))
@@ -217,7 +217,7 @@ def test_statistics_of_what_was_not_seen_before():
 
 
 def test_a_minute_is_a_budget(tmp_path, monkeypatch):
-    # a clock that goes on by a second whenever it is read, so that nothing depends on the machine
+    # a clock that advances by a second per reading, so that nothing depends on the machine
     seconds = itertools.count()
     monkeypatch.setattr(training, "time", SimpleNamespace(monotonic=lambda: float(next(seconds))))
     overrides = [SMALL_EPISODES, "n_steps=20", "batch_size=20", "n_epochs=2", "learning_rate=lin_0.001"]
