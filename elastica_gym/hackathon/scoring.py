@@ -6,9 +6,9 @@
 | reach | 7.5 | the head's surface comes within 0.05 m of the object's |
 | move | 7.5 | the base of the object moves 0.1 m while the body touches it and it is within 45 degrees of upright |
 | grab | 10 | one arm's elements that touch the object span 200 degrees or more, at least five of them, for 0.5 s |
-| return | 20 | an arm that has grabbed it keeps 150 degrees, and with all other goals behind it, the head is back \
-within 0.1 m of its start and the object's base within 0.3 m of the head |
-| general | 50 | 25 times the fraction of targets on the arc, and 25 times that anywhere, on which all others hold |
+| return | 20 | an arm that has grabbed it keeps 150 degrees, and after all other goals, the head is back within 0.1 m \
+of its start and the object's base within 0.3 m of the head |
+| general | 50 | 25 times the fraction of targets on which all others hold, on the arc, and the same anywhere |
 
 Distances are in the plane, and between centres except for ``reach``. Displacements of the object add up as vectors
 over pairs of consecutive samples that both count, so moving to and fro cancels. A grab lasts from its first to its last

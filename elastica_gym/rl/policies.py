@@ -174,7 +174,7 @@ def load_run(run: Path) -> tuple[TrainedPolicy, dict[str, Any]]:
     config = read_config(run)
     folder = run if (run / "model.zip").exists() else last_whole_checkpoint(run / "checkpoints")
     if folder is None:
-        raise BadInputError(f"The run {run} has neither a model.zip nor a whole checkpoint.")
+        raise BadInputError(f"The run {run} has neither a model.zip nor an intact checkpoint.")
     model = load_model(folder / "model.zip", config["algo"])
     normalize = normalize_arguments(config["hyperparameters"])
     sees_scaled = normalize is not None and normalize.get("norm_obs", True)

@@ -157,7 +157,7 @@ class Training:
     def _take_over(self, start: str) -> str:
         """Start from the networks and statistics of another run or a pretrained policy, and return its environment id.
 
-        Exploration starts afresh. New observations have zero weights at first.
+        Exploration is reset. New observations have zero weights at first.
         """
         other, known, env_id, algo = _networks(start)
         now = self.adapter.batch.observation_names

@@ -94,7 +94,7 @@ class GaitPolicy:
 def check_fits(gait: Gait, body: Body) -> None:
     """Raise ``BadInputError`` if the gait is for another animal."""
     if gait.body != body.name:
-        raise BadInputError(f"The gait {gait.name!r} is of the {gait.body}, not of the {body.name}.")
+        raise BadInputError(f"The gait {gait.name!r} is for the {gait.body}, not for the {body.name}.")
 
 
 def angle_to_goal(observations: np.ndarray, batch: Any) -> np.ndarray:

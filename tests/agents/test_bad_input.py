@@ -147,7 +147,7 @@ def test_unknown_spread():
     )
 
 
-def test_the_snakes_gait_is_not_the_octopuss():
+def test_the_gait_of_the_snake_is_refused_for_the_octopus():
     message = refused("agents.evaluate", "--policy", "seed_gait", "--env", "elastica_gym/OctopusCrawl-v1")
     assert "seed_gait is the snake's published gait" in message
 
@@ -207,7 +207,7 @@ def test_old_packages(monkeypatch):
     assert checks.missing_extra("viz") == message
 
 
-def test_more_than_fits_into_memory(tmp_path):
+def test_out_of_memory(tmp_path):
     # more than a process can address, even with overcommit
     huge = "--n-envs", 1024, "--set", "n_steps=1000000000"
     output = refused("agents.train", "--folder", tmp_path, *huge, status=1)

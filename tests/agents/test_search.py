@@ -76,7 +76,7 @@ def test_a_steered_wave_bends_towards_the_goal():
     assert (right - straight) * bend > 0.0 > (left - straight) * bend
 
 
-def test_the_arms_strokes_are_mirror_images():
+def test_the_strokes_of_the_arms_are_mirror_images():
     values = starts(gaits.STROKE) + np.random.default_rng(0).normal(0.0, 0.3, len(gaits.STROKE.parameters))
     values[0] = 0.8
     # ahead to the right, and its mirror image, behind to the right
@@ -165,7 +165,7 @@ def test_the_shipped_snake_beats_the_shipped_gait():
 
 
 def test_bad_searches_are_refused(tmp_path):
-    assert "The gait 'stroke' is of the octopus" in refused("agents.search", "--gait", "stroke", "--out", tmp_path)
+    assert "The gait 'stroke' is for the octopus" in refused("agents.search", "--gait", "stroke", "--out", tmp_path)
     assert "population must be at least 4, got 1" in refused("agents.search", "--population", 1, "--out", tmp_path)
 
 

@@ -260,7 +260,7 @@ def test_sac_is_resumed_with_its_replay_buffer(tmp_path):
     assert after.num_timesteps == 1024 and after._n_updates > before._n_updates > 100
 
 
-def test_metrics_of_sac_have_its_losses_though_it_begins_without(tmp_path):
+def test_metrics_of_sac_have_columns_for_losses_from_the_start(tmp_path):
     folder = tmp_path / "run"
     run(
         "agents.train",

@@ -45,7 +45,7 @@ def test_the_published_main_loop():
     assert rigid_body.position_collection.shape == (3, 1) and rigid_body.director_collection.shape == (3, 3, 1)
 
 
-def test_where_things_start():
+def test_initial_positions():
     _, (rod, thing) = Environment(1.0, [-0.5, 0.0, 0.3]).reset()
     np.testing.assert_allclose(rod.position_collection[[0, 2], 60], [0.0, 0.5], atol=1e-12)
     np.testing.assert_allclose(thing.position_collection[:, 0], [-0.5, 0.5 * thing.length, 0.3], atol=1e-3)

@@ -216,7 +216,7 @@ def test_a_grip_that_is_lost_has_to_be_grabbed_again():
         assert held(with_spans(again)) == (list(GOALS) if returns else up_to("return"))
 
 
-def test_the_other_arm_may_not_bring_it():
+def test_the_other_arm_may_not_return_the_object():
     samples = perfect()
     late = clock > 6.0
     samples.spans[late, 0, 1] = samples.spans[late, 0, 0]
@@ -317,7 +317,7 @@ def test_points_for_targets():
     assert score({"default": everything, "arc": four, "anywhere": four})["general"] == 0.0
 
 
-def test_the_tasks_bounds_are_the_scorers():
+def test_task_and_scorer_have_the_same_bounds():
     """They are defined twice, to keep rewards and points independent."""
     assert (handling.WRAPPED, handling.FEWEST, handling.GRABBING_TIME) == (
         scoring.GRAB,

@@ -11,7 +11,7 @@ def write(folder: Path, steps: int, text: str = "weights") -> Path:
     return checkpoints.write_checkpoint(folder, steps, lambda place: (place / "model.zip").write_text(text))
 
 
-def test_the_last_ones_are_kept(tmp_path):
+def test_the_last_checkpoints_are_kept(tmp_path):
     written = [write(tmp_path, steps) for steps in (100, 200, 1000)]
     assert checkpoints.checkpoint_folders(tmp_path) == written[1:]
     assert checkpoints.last_whole_checkpoint(tmp_path) == written[-1]
