@@ -1,7 +1,7 @@
-"""Cosserat rods in the names of PyElastica: scripts run with their import changed, on the engine's compiled step.
+"""Cosserat rods under PyElastica's names: scripts run on the engine's compiled step once their import is changed.
 
-A simulator is a class of `BaseSystemCollection` and its features; it takes rods, loads and constraints, and after
-``finalize`` it is integrated.
+A simulator class derives from `BaseSystemCollection` and its features; add rods, loads and constraints, call
+``finalize`` and integrate it.
 """
 
 from ..engine.rod import stable_time_step

@@ -1,4 +1,4 @@
-"""Run a script that was written for PyElastica: ``python -m elastica_gym.cosserat script.py [arguments]``."""
+"""Run a script written for PyElastica: ``python -m elastica_gym.cosserat script.py [arguments]``."""
 
 import runpy
 import sys
@@ -11,6 +11,6 @@ if __name__ == "__main__":
         sys.exit(__doc__)
     stand_in_for_elastica()
     del sys.argv[0]
-    # as Python itself does for a script
+    # as Python does for a script
     sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
     runpy.run_path(sys.argv[0], run_name="__main__")

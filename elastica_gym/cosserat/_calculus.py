@@ -1,4 +1,4 @@
-"""Differences and averages along a rod, for scripts and for compiled functions of their own."""
+"""Differences and averages along a rod, for scripts and their compiled functions."""
 
 import numpy as np
 from numba import njit
@@ -73,11 +73,11 @@ def _clip_array(input_array, vmin, vmax):
 
 @njit(cache=True)
 def _isnan_check(array):
-    """Return whether any entry is not a number."""
+    """Return whether any entry is NaN."""
     return bool(np.isnan(array).any())
 
 
-# by the names of 1.0
+# names in 1.0
 _difference, _average = position_difference_kernel, position_average
 _trapezoidal, _two_point_difference = quadrature_kernel, difference_kernel
 _trapezoidal_for_block_structure = quadrature_kernel_for_block_structure

@@ -1,6 +1,6 @@
-"""Products of many small vectors and matrices, for scripts and for compiled functions of their own.
+"""Products of many small vectors and matrices, for scripts and their compiled functions.
 
-Vectors are columns, (3, n), matrices stand side by side, (3, 3, n).
+Vectors are columns, (3, n); matrices are stacked along the last axis, (3, 3, n).
 """
 
 from itertools import permutations
@@ -12,7 +12,7 @@ from ..engine.model import Array
 
 
 def levi_civita_tensor(dim: int) -> Array:
-    """Return the tensor of parities of permutations, 1, -1 or 0, of ``dim`` indices."""
+    """Return the Levi-Civita tensor of ``dim`` indices, with entries 1, -1 or 0."""
     epsilon = np.zeros((dim,) * dim)
     for indices in permutations(range(dim)):
         epsilon[indices] = round(np.linalg.det(np.eye(dim)[list(indices)]))
@@ -122,7 +122,7 @@ def _batch_vector_sum(vector1, vector2):
 
 @njit(cache=True)
 def _batch_matrix_transpose(input_matrix):
-    """Return the transposed of each, (3, 3, n)."""
+    """Return the transpose of each matrix, (3, 3, n)."""
     result = np.empty(input_matrix.shape)
     for i in range(input_matrix.shape[0]):
         for j in range(input_matrix.shape[1]):

@@ -1,6 +1,6 @@
-"""Rotations of many frames at once, for scripts and for compiled functions of their own.
+"""Rotations of many frames at once, for scripts and their compiled functions.
 
-A frame is a matrix of directors as rows; to turn it by a vector a, it is multiplied by exp(-[a]x).
+A frame is a matrix with directors as rows; multiplying it by exp(-[a]x) turns it by a vector a.
 """
 
 from math import atan2, sin, sqrt

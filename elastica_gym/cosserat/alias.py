@@ -1,6 +1,6 @@
-"""Let the name ``elastica`` stand for this library, so that what was written for PyElastica runs as it is.
+"""Alias the name ``elastica`` to this library, so that PyElastica scripts run unchanged.
 
-``python -m elastica_gym.cosserat script.py [arguments]`` runs a script so; in a notebook or a test, call
+``python -m elastica_gym.cosserat script.py [arguments]`` runs a script this way; in a notebook or a test, call
 `stand_in_for_elastica` before the first import.
 """
 
@@ -19,7 +19,7 @@ NAME, LIBRARY = "elastica", __package__
 
 
 def stand_in_for_elastica() -> None:
-    """Have ``import elastica``, and of whatever is in it, give this library, from now on.
+    """Make ``import elastica`` and imports from it return this library from now on.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def stand_in_for_elastica() -> None:
 
 
 class _Alias(ModuleType):
-    """The package by its other name, which has its attributes and those that PyElastica's star import let slip."""
+    """The package under its alias, with its attributes and those that PyElastica's star import leaks."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
@@ -47,7 +47,7 @@ class _Alias(ModuleType):
 
 
 class _Finder(MetaPathFinder, Loader):
-    """Finds the library's modules under the other name, as the same objects."""
+    """Finds the library's modules under the alias, as the same objects."""
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
         if fullname != NAME and not fullname.startswith(f"{NAME}."):
@@ -58,6 +58,6 @@ class _Finder(MetaPathFinder, Loader):
         return _Alias(spec.name) if spec.name == NAME else None
 
     def exec_module(self, module: ModuleType) -> None:
-        # what stands here after this is what an import gives
+        # the import returns whatever is in sys.modules afterwards
         if module.__name__ != NAME:
             sys.modules[module.__name__] = importlib.import_module(LIBRARY + module.__name__.removeprefix(NAME))

@@ -1,4 +1,4 @@
-"""Constraints: what is prescribed of the motion of rods and rigid bodies."""
+"""Constraints: prescribed motion of rods and rigid bodies."""
 
 import warnings
 from abc import ABC, abstractmethod
@@ -19,12 +19,12 @@ class ConstraintBase(ABC):
     """Base class of constraints; write your own by overriding both methods.
 
     ``simulator.constrain(system).using(cls, *args, constrained_position_idx=..., constrained_director_idx=...)``
-    makes one at ``finalize`` from the positions and the directors at these indices, and what else was given.
+    makes one at ``finalize`` from the positions and directors at these indices and the other arguments.
 
     Attributes
     ----------
     system
-        What is constrained.
+        The constrained system.
     constrained_position_idx, constrained_director_idx : NDArray
         Indices that were given to ``using``.
     """
@@ -59,7 +59,7 @@ class ConstraintBase(ABC):
 
     @abstractmethod
     def constrain_values(self, system: Any, time: float) -> None:
-        """Set positions and directors. Called after each drift, with the time after it [s]."""
+        """Set positions and directors. Called after each drift, with the time at its end [s]."""
 
     @abstractmethod
     def constrain_rates(self, system: Any, time: float) -> None:
@@ -81,14 +81,14 @@ class FreeBC(ConstraintBase):
 
 @refuse_methods
 class GeneralConstraint(ConstraintBase):
-    """Holds nodes along some axes of the lab, and stops elements from turning about some.
+    """Holds nodes along some axes of the lab, and keeps elements from turning about some.
 
     Parameters
     ----------
     *fixed_data : Array
         Positions, (3,), and directors, (3, 3), at the constrained indices; ``using`` passes them.
     translational_constraint_selector, rotational_constraint_selector : array_like of bool, optional
-        True for axes of the lab along or about which there is no motion; all by default, (3,).
+        True for axes of the lab without motion along or about them, (3,); default all.
     """
 
     def __init__(
@@ -114,13 +114,13 @@ class GeneralConstraint(ConstraintBase):
         )
 
     def constrain_values(self, system: Any, time: float) -> None:
-        """Put nodes back along the axes that are held."""
+        """Put nodes back along the held axes."""
         held = self.translational_constraint_selector
         for index, position in zip(self.constrained_position_idx, self.fixed_positions, strict=True):
             system.position_collection[held, index] = position[held]
 
     def constrain_rates(self, system: Any, time: float) -> None:
-        """Stop motion along and about the axes that are held."""
+        """Stop motion along and about the held axes."""
         for index in self.constrained_position_idx:
             system.velocity_collection[self.translational_constraint_selector, index] = 0.0
         for index in self.constrained_director_idx:
@@ -138,7 +138,7 @@ class GeneralConstraint(ConstraintBase):
 
 
 class FixedConstraint(GeneralConstraint):
-    """Holds nodes where they are at ``finalize`` and elements as they are turned then.
+    """Holds nodes and elements at their positions and directors of ``finalize``.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ class OneEndFixedBC(FixedConstraint):
     Parameters
     ----------
     fixed_position, fixed_directors : Array
-        Where, (3,), and how turned, (3, 3); ``using`` passes what they are at the constrained indices.
+        Position, (3,), and directors, (3, 3), at the constrained indices; ``using`` passes them.
     """
 
     def __init__(self, fixed_position: Array, fixed_directors: Array, **kwargs: Any) -> None:
@@ -201,21 +201,21 @@ class OneEndFixedBC(FixedConstraint):
 
 
 class HelicalBucklingBC(ConstraintBase):
-    """Twists and slackens a rod by its ends, then holds them (Gazzola et al. 2018, section 3.4.1).
+    """Twists a rod by its ends and gives it slack, then holds them (Gazzola et al. 2018, section 3.4.1).
 
-    Until ``twisting_time``, the ends approach each other by ``slack`` and turn against each other by
+    Until ``twisting_time``, the ends approach each other by ``slack`` and counter-rotate by
     ``number_of_rotations`` turns, both at a constant rate.
 
     Parameters
     ----------
     position_start, position_end, director_start, director_end : Array
-        Of the ends; ``using`` passes them.
+        Positions and directors of the ends; ``using`` passes them.
     twisting_time : float
         [s]
     slack : float
         [m]
     number_of_rotations : float
-        Turns of one end against the other.
+        Turns of one end relative to the other.
     """
 
     def __init__(
@@ -243,7 +243,7 @@ class HelicalBucklingBC(ConstraintBase):
         self.final_end_directors = _turned(director_end, -angle, direction)
 
     def constrain_values(self, system: Any, time: float) -> None:
-        """Hold the ends once they are twisted."""
+        """Hold the ends after twisting."""
         if time > self.twisting_time:
             system.position_collection[..., 0] = self.final_start_position
             system.position_collection[..., -1] = self.final_end_position
@@ -264,7 +264,7 @@ class HelicalBucklingBC(ConstraintBase):
             (-1, -1.0, self.final_end_position, self.final_end_directors),
         )
         for index, sign, position, directors in ends:
-            # about its own axis an element turns in both frames alike
+            # rotation about an element's own axis is the same in both frames
             omega = sign * (self.system.director_collection[..., index] @ self.ang_vel)
             builder.add_pin(
                 self.system, index, position=position, start_time=self.twisting_time, velocity=sign * self.shrink_vel
@@ -296,7 +296,7 @@ def _selector(name: str, value: ArrayLike | None) -> NDArray[np.bool_]:
 
 
 def _turned(directors: Array, angle: float, axis: Array) -> Array:
-    """Return directors as they are seen from a frame turned by an angle about a unit axis of the lab."""
+    """Return directors in a frame turned by an angle about a unit axis of the lab."""
     K = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
     R = np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
     return directors @ R.T

@@ -1,4 +1,4 @@
-"""Built-in features called by hand, by a script or a user's subclass: what they do in the compiled step, done alone."""
+"""Built-in features called by hand, from a script or a user's subclass, outside the compiled step."""
 
 import copy
 import weakref
@@ -13,11 +13,11 @@ from .rod.rod_base import RodBase
 
 SILENT = Hooks(0, 0, 0, 0)
 UNLISTED = -1
-"""Number of pairs of elements where none are listed yet"""
+"""Number of neighbours that marks a neighbour list as not built"""
 
 
 class Twin:
-    """Copies of systems in a simulation of their own, which shows what a feature does to them.
+    """Copies of systems in a separate simulation, used to compute the loads of one feature.
 
     Parameters
     ----------
@@ -26,18 +26,18 @@ class Twin:
 
     def __init__(self, movers: list[Any]) -> None:
         self._movers = [weakref.ref(system) for system in movers]
-        # imported here, since a simulation needs the features that are called
+        # imported here to avoid a circular import
         from .simulation import Simulation
 
         self._copies = [copy.deepcopy(system) for system in movers]
         self._simulation = Simulation(self._copies, {})
 
     def is_of(self, movers: list[Any]) -> bool:
-        """Return whether it is of these systems."""
+        """Return whether this twin copies these systems."""
         return all(mine() is system for mine, system in zip(self._movers, movers, strict=True))
 
     def act(self, movers: list[Any], lower: Callable[..., None], systems: tuple[Any, ...]) -> None:
-        """Add the loads of what ``lower(builder, *systems)`` writes to those of the systems."""
+        """Add the loads of the rows that ``lower(builder, *systems)`` writes to those of the systems."""
         sim, copies = self._simulation, {id(one): two for one, two in zip(movers, self._copies, strict=True)}
         for system, twin in zip(movers, self._copies, strict=True):
             for name, values in twin._fields.items():
@@ -60,11 +60,11 @@ class Twin:
 
 
 _twins: "weakref.WeakKeyDictionary[Any, dict[tuple[int, ...], Twin]]" = weakref.WeakKeyDictionary()
-"""By the first system, and by the identities of all: a subclass calls at every step"""
+"""By the first system and by the identities of all; cached, since a subclass calls at every step"""
 
 
 def act(lower: Callable[..., None], *systems: Any) -> None:
-    """Add the loads of a feature, whose method ``lower`` is, to systems as they are now."""
+    """Add the loads of a feature, given by its method ``lower``, to systems in their current state."""
     unique = {id(system): system for system in systems if isinstance(system, RodBase | RigidBodyBase)}
     movers = list(unique.values())
     known, key = _twins.setdefault(movers[0], {}), tuple(unique)

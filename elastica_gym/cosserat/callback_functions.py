@@ -1,4 +1,4 @@
-"""Callbacks: what looks at systems while a simulation runs."""
+"""Callbacks, which record systems while a simulation runs."""
 
 import atexit
 import os
@@ -17,12 +17,12 @@ from ..files import write_atomically
 class CallBackBaseClass:
     """Base class of callbacks; write your own by overriding `make_callback`.
 
-    One with an integer attribute ``every``, ``step_skip`` or ``sample_every`` is called at the multiples
-    of it, any other after every step; each at ``finalize`` too, with time 0 and step 0.
+    One with an integer attribute ``every``, ``step_skip`` or ``sample_every`` is called at multiples
+    of it, any other after every step; all are also called at ``finalize``, with time 0 and step 0.
     """
 
     def make_callback(self, system: Any, time: float, current_step: int) -> None:
-        """Look at a system: ``time`` is now [s], ``current_step`` the number of steps since time 0."""
+        """Record a system at ``time`` [s]; ``current_step`` is the number of steps since time 0."""
 
     def on_close(self) -> None:
         """Finish; ``simulator.close()`` calls it."""
@@ -34,9 +34,9 @@ class MyCallBack(CallBackBaseClass):
     Parameters
     ----------
     step_skip : int
-        Steps from one to the next.
+        Steps between samples.
     callback_params : dict
-        Of lists, such as ``defaultdict(list)``.
+        Dict of lists, such as ``defaultdict(list)``.
     """
 
     def __init__(self, step_skip: int, callback_params: dict) -> None:
@@ -45,7 +45,7 @@ class MyCallBack(CallBackBaseClass):
         self.sample_every, self.callback_params = step_skip, callback_params
 
     def make_callback(self, system: Any, time: float, current_step: int) -> None:
-        """Append copies of what is now."""
+        """Append copies of the current state."""
         if current_step % self.sample_every == 0:
             _append(self.callback_params, system, time, current_step)
 
@@ -53,34 +53,33 @@ class MyCallBack(CallBackBaseClass):
 class ExportCallBack(CallBackBaseClass):
     """Writes time, step, position, directors and velocity to numbered files.
 
-    Each file is written beside its place and then moved there, so that a run that is killed loses at
-    most what was collected since the last one. ``simulator.close()`` writes the rest. A file ends before
-    the step that is a multiple of ``file_save_interval``, so that an interval of 100 steps gives samples
-    of the steps 0 to 99, 100 to 199 and so on.
+    Each file is written under a temporary name and then moved, so a killed run loses at most the samples
+    since the last file. ``simulator.close()`` writes the rest. A file ends before the next multiple of
+    ``file_save_interval``: an interval of 100 steps gives files of steps 0 to 99, 100 to 199 and so on.
 
     Parameters
     ----------
     step_skip : int
-        Steps from one to the next.
+        Steps between samples.
     filename : str
-        Start of the files' names, ``<filename>_<number>.<extension>``.
+        Start of the file names, ``<filename>_<number>.<extension>``.
     directory : str
-        Where to write; made if it is not there. Without it, ``path`` (or ``filename``) holds both.
+        Folder, created if missing. If omitted, ``path`` (or ``filename``) includes it.
     method : str
-        One of ``AVAILABLE_METHOD``: pickle, npz, or pickle to a temporary folder.
+        One of ``AVAILABLE_METHOD``: pickle, npz, or pickle in a temporary folder.
     initial_file_count : int
         Number of the first file.
     file_save_interval : int
-        Steps after which a file is written; earlier if its arrays pass ``FILE_SIZE_CUTOFF`` bytes.
+        Steps per file; a file is written earlier if its arrays exceed ``FILE_SIZE_CUTOFF`` bytes.
     path : str
-        The seed's name for directory and name in one.
+        Older alternative to ``directory`` and ``filename``: both in one.
     save_every : int
-        The seed's name for ``file_save_interval``.
+        Older name of ``file_save_interval``.
 
     Attributes
     ----------
     save_path : str
-        Path of the files, to be formatted with a number and the extension.
+        Path of the files, a format string for number and extension.
     file_count : int
         Number of the next file.
     """
@@ -101,11 +100,11 @@ class ExportCallBack(CallBackBaseClass):
         save_every: float | None = None,
     ) -> None:
         if method is None and directory in self.AVAILABLE_METHOD:
-            # the seed's order of arguments: step_skip, path, method
+            # older order of arguments: step_skip, path, method
             directory, method = None, directory
         place = path if path is not None else filename
         if place is None:
-            raise TypeError("filename is missing: where to write")
+            raise TypeError("filename is missing")
         if method not in self.AVAILABLE_METHOD:
             raise ValueError(f"method must be one of {self.AVAILABLE_METHOD}, not {method!r}")
         interval = int(file_save_interval if save_every is None else save_every)
@@ -123,9 +122,9 @@ class ExportCallBack(CallBackBaseClass):
         self.buffer_size = 0
 
     def make_callback(self, system: Any, time: float, current_step: int) -> None:
-        """Collect copies of what is now, and write a file when it is time."""
+        """Collect copies of the current state, and write a file when due."""
         if current_step % self.step_skip == 0:
-            # called at samples only, and the file may have been due at a step since the last one
+            # called at samples only: the file may have become due since the last one
             since = max(0, current_step - self.step_skip)
             if self.buffer_size and current_step // self.file_save_interval > since // self.file_save_interval:
                 self._dump()
@@ -135,15 +134,15 @@ class ExportCallBack(CallBackBaseClass):
             self._dump()
 
     def get_last_saved_path(self) -> str | None:
-        """Return the path of the file before the next one, None if that has the number 0."""
+        """Return the path of the file before the next one, or None if the next has number 0."""
         return None if self.file_count == 0 else self._path(self.file_count - 1)
 
     def on_close(self) -> None:
-        """Write what is left."""
+        """Write the remaining samples."""
         if self.buffer_size:
             self._dump()
 
-    # by its names in 0.3
+    # names in 0.3
     close = clear = on_close
 
     def _path(self, number: int) -> str:
@@ -169,24 +168,24 @@ class ExportCallBack(CallBackBaseClass):
 class RerunCallBack(CallBackBaseClass):
     """Records rods and rigid bodies for the rerun viewer: ``rerun <path>`` shows them.
 
-    ``simulator.collect_diagnostics(...)``, with dots, records all systems; a rod, or a list of some, these.
-    The file is written by ``simulator.close()``, or else when Python ends.
+    ``simulator.collect_diagnostics(...)``, with a literal ellipsis, records all systems; a rod or a list of
+    rods records only these. The file is written by ``simulator.close()``, or when Python exits.
 
     Parameters
     ----------
     step_skip : int
-        Steps from one moment of the recording to the next.
+        Steps between frames.
     path : str or Path
-        Where to write it; by custom it ends in ``.rrd``.
+        Output file, by convention ``*.rrd``.
 
     Raises
     ------
     ImportError
-        If rerun is not installed: says how.
+        If rerun is not installed; the message says how to install it.
     """
 
     def __init__(self, step_skip: int, path: str | Path) -> None:
-        # imported here: the physics does without pictures
+        # imported here: optional dependency
         from .recording import SystemRecorder
 
         if step_skip < 1:
@@ -196,7 +195,7 @@ class RerunCallBack(CallBackBaseClass):
         self._is_written = True
 
     def make_callback(self, system: Any, time: float, current_step: int) -> None:
-        """Collect what is now."""
+        """Collect the current state."""
         if current_step % self.step_skip:
             return
         systems = tuple(system.values()) if isinstance(system, dict) else system
@@ -206,7 +205,7 @@ class RerunCallBack(CallBackBaseClass):
             atexit.register(self.on_close)
 
     def on_close(self) -> None:
-        """Write what has been collected so far."""
+        """Write the states collected so far."""
         if not self._is_written:
             self._is_written = True
             atexit.unregister(self.on_close)

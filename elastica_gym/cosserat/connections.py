@@ -1,4 +1,4 @@
-"""Joints, by the name that the workflow of 0.2.x imports them from."""
+"""Joints, under their module name of 0.2.x."""
 
 from .joint import (
     ConnectionBase as ConnectionBase,

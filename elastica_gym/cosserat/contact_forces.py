@@ -18,17 +18,17 @@ from .surface.plane import Plane
 def common_check_systems_identity(system_one: Any, system_two: Any) -> None:
     """Raise TypeError if two systems are the same."""
     if system_one is system_two:
-        raise TypeError("the first system is the second; this contact is between two")
+        raise TypeError("the two systems are the same; this contact is between different systems")
 
 
 def common_check_systems_different(system_one: Any, system_two: Any) -> None:
     """Raise TypeError unless two systems are the same."""
     if system_one is not system_two:
-        raise TypeError("the first system is not the second; this contact is of a system with itself")
+        raise TypeError("the two systems are different; this contact is of a system with itself")
 
 
 def common_check_systems_validity(system: Any, allowed_system: Sequence[type]) -> None:
-    """Raise TypeError unless a system is of a type that is allowed."""
+    """Raise TypeError unless a system is of an allowed type."""
     if not isinstance(system, tuple(allowed_system)):
         names = " or ".join(each.__name__ for each in allowed_system)
         raise TypeError(f"a system must be a {names}, not a {type(system).__name__}")
@@ -52,16 +52,16 @@ class NoContact:
 
     @property
     def _allowed_system_one(self) -> list[type]:
-        """What the first system may be; subclasses override it, by its name in 1.0."""
+        """Types of the first system; subclasses override it (name in 1.0)."""
         return list(self.allowed_systems_one)
 
     @property
     def _allowed_system_two(self) -> list[type]:
-        """What the second system may be; subclasses override it, by its name in 1.0."""
+        """Types of the second system; subclasses override it (name in 1.0)."""
         return list(self.allowed_systems_two)
 
     def _check_systems_validity(self, system_one: Any, system_two: Any) -> None:
-        """Raise TypeError unless these can touch in this way; subclasses override it, by its name in 1.0."""
+        """Raise TypeError unless this contact applies to the systems; subclasses override it (name in 1.0)."""
         for which, system, allowed in (
             ("first", system_one, self._allowed_system_one),
             ("second", system_two, self._allowed_system_two),
@@ -73,7 +73,7 @@ class NoContact:
                 )
 
     def require_systems(self, system_one: Any, system_two: Any) -> None:
-        """Raise TypeError unless these can touch in this way."""
+        """Raise TypeError unless this contact applies to the systems."""
         self._check_systems_validity(system_one, system_two)
 
 
@@ -104,9 +104,9 @@ class _Press(_Compiled):
 
 
 class RodRodContact(_Press):
-    """Two rods that touch, without friction. It keeps energy where ``nu`` is 0, and never pulls.
+    """Contact of two rods, without friction. It conserves energy if ``nu`` is 0, and never pulls.
 
-    With m the mass of a node and dt the time step, ``k`` below m/(2 dt^2) and ``nu`` below m/(4 dt) are stable.
+    With m the mass of a node and dt the time step, it is stable for ``k`` below m/(2 dt^2) and ``nu`` below m/(4 dt).
 
     Parameters
     ----------
@@ -121,12 +121,12 @@ class RodRodContact(_Press):
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write a pair."""
         if system_one is system_two:
-            raise ValueError("RodRodContact is between two rods; a rod touches itself by RodSelfContact")
+            raise ValueError("RodRodContact is between two rods; use RodSelfContact for a rod with itself")
         builder.add_rod_contact(system_one, system_two, stiffness=self.k, damping=self.nu)
 
 
 class RodSelfContact(_Press):
-    """A rod that touches itself, where two elements are more than 0.4 of a turn of its surface apart along it.
+    """Contact of a rod with itself, between elements that are more than 0.4 circumferences apart along the rod.
 
     Parameters
     ----------
@@ -141,12 +141,12 @@ class RodSelfContact(_Press):
     def lower(self, builder: SceneBuilder, system_one: Any, system_two: Any) -> None:
         """Write a pair."""
         if system_one is not system_two:
-            raise ValueError("RodSelfContact is of a rod with itself; give it twice, or use RodRodContact")
+            raise ValueError("RodSelfContact is of a rod with itself; give the rod twice, or use RodRodContact")
         builder.add_rod_contact(system_one, system_one, stiffness=self.k, damping=self.nu)
 
 
 class _RodOnBody(_Compiled):
-    """A rod that touches a rigid body.
+    """Contact of a rod with a rigid body.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ class _RodOnBody(_Compiled):
     nu : float
         Damping force per velocity of approach [N s/m].
     velocity_damping_coefficient : float
-        Force of friction per slip, below the Coulomb bound [N s/m].
+        Friction force per slip velocity, below the Coulomb bound [N s/m].
     friction_coefficient : float
         mu
     """
@@ -182,19 +182,19 @@ class _RodOnBody(_Compiled):
 
 
 class RodCylinderContact(_RodOnBody):
-    """A rod and a cylinder, which is a capsule to it, with Coulomb friction. It never pulls."""
+    """Contact of a rod and a cylinder, treated as a capsule, with Coulomb friction. It never pulls."""
 
     allowed_systems_two = (Cylinder,)
 
 
 class RodSphereContact(_RodOnBody):
-    """A rod and a sphere, with Coulomb friction. It never pulls."""
+    """Contact of a rod and a sphere, with Coulomb friction. It never pulls."""
 
     allowed_systems_two = (Sphere,)
 
 
 class CylinderPlaneContact(_Press):
-    """A cylinder on a plane, which touches it at the rims of its flat ends. It never pulls.
+    """Contact of a cylinder with a plane, at the rims of its flat ends. It never pulls.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ class CylinderPlaneContact(_Press):
     nu : float
         Damping force per velocity along the normal at each point of contact [N s/m].
     friction_coefficient : float
-        mu; by hand, outside of a run, there is no friction, since what ends slip depends on the time step.
+        mu; no friction when called by hand before the first run, since static friction needs the time step.
     """
 
     allowed_systems_one = (Cylinder,)
@@ -222,7 +222,7 @@ class CylinderPlaneContact(_Press):
 
 
 class _RodOnPlane(_Compiled):
-    """A rod on a plane, which answers to the net force on it."""
+    """Contact of a rod with a plane, which balances the net force on the rod."""
 
     allowed_systems_one = (RodBase,)
     allowed_systems_two = (Plane,)
@@ -250,7 +250,7 @@ class _RodOnPlane(_Compiled):
 
 
 class RodPlaneContact(_RodOnPlane):
-    """A rod on a plane without friction.
+    """Contact of a rod with a plane, without friction.
 
     Parameters
     ----------
@@ -267,14 +267,14 @@ class RodPlaneContact(_RodOnPlane):
 
 
 class RodPlaneContactWithAnisotropicFriction(_RodOnPlane):
-    """A rod on a plane with anisotropic Coulomb friction (Gazzola et al. 2018, appendix D).
+    """Contact of a rod with a plane, with anisotropic Coulomb friction (Gazzola et al. 2018, appendix D).
 
     Parameters
     ----------
     k, nu, surface_tol : float
         As for `RodPlaneContact`.
     slip_velocity_tol : float
-        Slip velocity up to which friction is static; from twice of it on it is kinetic [m/s].
+        Slip velocity up to which friction is static; above twice this it is kinetic [m/s].
     static_mu_array, kinetic_mu_array : array_like
         Coefficients forward (along the tangent), backward and sideways, (3,).
     """

@@ -1,4 +1,4 @@
-"""A feature that a user has announced, and the class that is to provide it."""
+"""A feature that a user has declared, and the class that provides it."""
 
 import inspect
 from typing import Any
@@ -7,23 +7,23 @@ from .keywords import known_keywords, warn_of_unknown
 
 
 class Declaration:
-    """What ``simulator.constrain(rod)`` and its like return: tell it which class to use, by ``using``.
+    """Return value of ``simulator.constrain(rod)`` and similar methods; ``using`` sets the class.
 
     Parameters
     ----------
     what : str
-        How errors call it, such as "constraint".
+        Its name in error messages, such as "constraint".
     base : type
-        What the class must be derived from.
+        Required base class.
     systems : tuple
-        What it acts on.
+        Systems it acts on.
 
     Attributes
     ----------
     indices : tuple
-        Where a joint is on its two systems.
+        Indices of a joint on its two systems.
     observed
-        What a callback is shown.
+        Argument passed to a callback.
     """
 
     def __init__(self, what: str, base: type, *systems: Any) -> None:
@@ -35,16 +35,16 @@ class Declaration:
         self.observed: Any = systems
 
     def using(self, cls: type, *args: Any, **kwargs: Any) -> "Declaration":
-        """Say which class provides the feature, and what it is made with at ``finalize``.
+        """Set the class that provides the feature, and its arguments at ``finalize``.
 
-        Keywords that a class of the library ignores, as PyElastica's does, give a warning.
+        Keywords that a library class ignores, as PyElastica's does, give a warning.
 
         Raises
         ------
         TypeError
             If the class is not derived from the right base.
         RuntimeError
-            If one has been given already.
+            If a class is already set.
         """
         if not (isinstance(cls, type) and issubclass(cls, self.base)):
             raise TypeError(
@@ -60,14 +60,14 @@ class Declaration:
         return self
 
     def make(self, *first: Any, **more: Any) -> Any:
-        """Make the feature, with arguments that go before the user's and keywords that go with them.
+        """Make the feature, with arguments before the user's and additional keywords.
 
         Raises
         ------
         RuntimeError
             If ``using`` was forgotten.
         TypeError
-            If the class does not take the arguments.
+            If the class does not accept the arguments.
         """
         if self.cls is None:
             raise RuntimeError(f"a {self.what} was declared without a class; did you forget .using(...)?")
@@ -80,7 +80,7 @@ class Declaration:
         return self.cls(*arguments, **keywords)
 
     def accepts(self, keyword: str) -> bool:
-        """Return whether the class takes a keyword when it is made."""
+        """Return whether the constructor accepts a keyword."""
         assert self.cls is not None
         parameters = inspect.signature(self.cls).parameters
         return keyword in parameters or any(p.kind is p.VAR_KEYWORD for p in parameters.values())

@@ -1,4 +1,4 @@
-"""Dampers: what takes energy out of a system at the end of each step."""
+"""Dampers, which remove energy from a system at the end of each step."""
 
 from abc import ABC, abstractmethod
 from typing import Any
@@ -20,7 +20,7 @@ class DamperBase(ABC):
     Attributes
     ----------
     system
-        What is damped.
+        The damped system.
     """
 
     def __init__(self, *args: Any, _system: Any = None, **kwargs: Any) -> None:
@@ -33,7 +33,7 @@ class DamperBase(ABC):
 
     @abstractmethod
     def dampen_rates(self, system: Any, time: float) -> None:
-        """Change velocities and angular velocities. Called once in a step, after its last kick."""
+        """Change velocities and angular velocities. Called once per step, after the last kick."""
 
 
 class AnalyticalLinearDamper(DamperBase):
@@ -42,14 +42,13 @@ class AnalyticalLinearDamper(DamperBase):
     Parameters
     ----------
     uniform_damping_constant : float
-        Of velocities and angular velocities alike [1/s].
+        Rate for both velocities and angular velocities [1/s].
     translational_damping_constant, rotational_damping_constant : float
-        Together: gamma_t/m of nodes [kg/s], and e gamma_r/J of elements [kg m^2/s].
+        Given together: gamma_t [kg/s] and gamma_r [kg m^2/s], for rates gamma_t/m and e gamma_r/J.
     damping_constant : float
-        Alone, deprecated: a rate of velocities [1/s], and of angular velocities e m/J times that.
+        Deprecated: rate of velocities [1/s]; that of angular velocities is e m/J times it.
     time_step : float
-        Of the simulation [s]. The one that it is run with counts; this one need not be given, but is
-        refused if it is not positive.
+        Optional time step [s]; must be positive. The step of the run is used instead.
     """
 
     def __init__(
@@ -112,20 +111,20 @@ class AnalyticalLinearDamper(DamperBase):
         builder.add_decay(self.system, node_rate=node, element_rate=element, dilating_rate=dilating)
 
 
-# by its name in 0.3.0
+# name in 0.3.0
 ExponentialDamper = AnalyticalLinearDamper
 
 
 class LaplaceDissipationFilter(DamperBase):
-    """Takes the shortest waves out of velocities and angular velocities, and leaves long ones alone.
+    """Removes the shortest waves from velocities and angular velocities, and keeps long ones.
 
-    What is taken is (-Laplacian/4)^order of them, with zero at the ends of an open rod (Jeanmart and
+    It subtracts (-Laplacian/4)^order of them, with zero at the ends of an open rod (Jeanmart and
     Winckelmans 2007).
 
     Parameters
     ----------
     filter_order : int
-        How often the Laplacian is taken; the higher, the less is damped.
+        Power of the Laplacian; higher orders damp less.
     """
 
     def __init__(self, filter_order: int, **kwargs: Any) -> None:
@@ -150,7 +149,7 @@ class LaplaceDissipationFilter(DamperBase):
 
 
 class RayleighDissipation(DamperBase):
-    """Drag on nodes and elements: nu l v and nu l w, with l the mean element length; half at the end nodes.
+    """Drag on nodes, nu l v, and elements, nu l w, with l the mean element length; half at the end nodes.
 
     Parameters
     ----------
@@ -185,7 +184,7 @@ class RayleighDissipation(DamperBase):
 
 
 def _element_mass(rod: Any) -> Array:
-    """Return the mass of elements: of nodes, halved between neighbours and whole at the ends [kg], (n,)."""
+    """Return element masses: half of each inner node's mass and all of the end nodes' [kg], (n,)."""
     if not isinstance(rod, RodBase):
         return np.array(rod.mass)
     if rod.ring_rod_flag:

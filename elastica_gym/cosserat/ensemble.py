@@ -1,4 +1,4 @@
-"""Systems that nothing joins, simulated side by side on the CPUs."""
+"""Independent systems, simulated in parallel on the CPUs."""
 
 import functools
 from collections.abc import Mapping, Sequence
@@ -17,11 +17,11 @@ from .rod.cosserat_rod import CosseratRod
 from .simulation import Callbacks, Simulation, is_lowered
 
 WORTHWHILE = 100_000
-"""Elements times steps that take some milliseconds: for less, threads cost more time than they save"""
+"""Elements times steps of a few milliseconds; below that, threads cost more time than they save"""
 
 
 def simulate_systems(systems: Sequence[Any], declared: Mapping[str, Sequence[Declaration]]) -> "Simulation | Ensemble":
-    """Return what simulates systems: on several CPUs if they fall into groups, and nothing calls Python often."""
+    """Return the simulation of systems, on several CPUs if they form independent groups and rarely call Python."""
     movers = [system for system in systems if isinstance(system, CosseratRod | RigidBodyBase)]
     callbacks = Callbacks(declared.get("callbacks", ()))
     names = {id(system): f"{type(system).__name__} {number}" for number, system in enumerate(systems)}
@@ -34,14 +34,14 @@ def simulate_systems(systems: Sequence[Any], declared: Mapping[str, Sequence[Dec
 
 
 class Ensemble:
-    """Several simulations that are run as one, to the same bits.
+    """Several simulations run as one, with bitwise identical results.
 
     Parameters
     ----------
     parts : sequence of Simulation
-        Of systems that do not act on those of another part, and without callbacks.
+        Simulations that do not interact, without callbacks.
     callbacks : Callbacks
-        Of all of them.
+        Callbacks of all parts.
     """
 
     def __init__(self, parts: Sequence[Simulation], callbacks: Callbacks) -> None:
@@ -50,7 +50,7 @@ class Ensemble:
         self._size = sum(_size(system) for part in parts for system in (*part.rods, *part.bodies))
 
     def begin(self) -> None:
-        """Apply constraints at time 0 and call back."""
+        """Apply constraints and call callbacks at time 0."""
         for part in self.parts:
             part.begin()
         self.callbacks.call(0.0, 0)
@@ -67,7 +67,7 @@ class Ensemble:
 
     @property
     def steps(self) -> int:
-        """How many steps have been taken."""
+        """Number of steps taken."""
         return self.parts[0].steps
 
     @steps.setter
@@ -76,7 +76,7 @@ class Ensemble:
             part.steps = count
 
     def advance(self, scheme: Scheme, dt: float, n_steps: int, time: float) -> float:
-        """Take steps from a time on, without callbacks, and return the time after [s]."""
+        """Take steps from a time, without callbacks, and return the time afterwards [s]."""
         for part in self.parts:
             part.require_time_step(dt)
         calls = [functools.partial(part.advance, scheme, dt, n_steps, time) for part in self.parts]
@@ -84,22 +84,22 @@ class Ensemble:
         return (side_by_side(calls) if is_long else [call() for call in calls])[0]
 
     def limit(self) -> Limit:
-        """Return the largest stable time step, and what it is that limits it."""
+        """Return the largest stable time step and what limits it."""
         return min(part.limit() for part in self.parts)
 
     def warn_of_divergence(self) -> None:
-        """Warn, once for each part, if motion is not finite: of what since which step."""
+        """Warn once per part if motion is not finite, naming the system and the step."""
         for part in self.parts:
             part.warn_of_divergence()
 
     def clear_loads(self) -> None:
-        """Forget the loads from outside."""
+        """Clear the external loads."""
         for part in self.parts:
             part.clear_loads()
 
 
 def _groups(movers: Sequence[Any], features: Mapping[str, Sequence[Declaration]], n_most: int) -> list[list[Any]]:
-    """Divide systems into groups of about the same size that no feature joins, at most so many."""
+    """Divide systems into at most ``n_most`` independent groups of similar size."""
     place = {id(system): number for number, system in enumerate(movers)}
     joined = [
         [place[id(system)] for system in declaration.systems if id(system) in place]
@@ -110,7 +110,7 @@ def _groups(movers: Sequence[Any], features: Mapping[str, Sequence[Declaration]]
     graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(movers), len(movers)))
     count, label = connected_components(graph, directed=False)
     sizes = np.bincount(label, weights=[_size(system) for system in movers])
-    # the largest first, each to the smallest group so far
+    # largest first, each into the smallest group so far
     load, group_of = np.zeros(min(count, n_most)), np.zeros(count, dtype=np.int64)
     for component in np.argsort(-sizes, kind="stable"):
         group_of[component] = np.argmin(load)

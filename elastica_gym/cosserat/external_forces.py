@@ -1,4 +1,4 @@
-"""Loads on rods and rigid bodies from outside."""
+"""External loads on rods and rigid bodies."""
 
 from typing import Any
 
@@ -12,17 +12,17 @@ from .lowering import SceneBuilder
 
 
 class NoForces:
-    """Base class of loads; write your own by overriding one of the methods or both.
+    """Base class of loads; write your own by overriding one or both methods.
 
-    They are called once in each step (in each stage of PEFRL), after the system has moved, and add to
+    They are called once per step (per stage of PEFRL), after the drift, and add to
     ``system.external_forces`` [N], lab frame, and ``system.external_torques`` [N m], material frame.
     """
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
-        """Add forces. ``time`` is that of the stage [s]."""
+        """Add forces at the stage's time [s]."""
 
     def apply_torques(self, system: Any, time: float = 0.0) -> None:
-        """Add torques. ``time`` is that of the stage [s]."""
+        """Add torques at the stage's time [s]."""
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
         """Write no rows."""
@@ -38,7 +38,7 @@ class GravityForces(NoForces):
     """
 
     def __init__(self, acc_gravity: ArrayLike = (0.0, -9.80665, 0.0)) -> None:
-        # a copy, unlike what other loads keep: as in 1.0.0
+        # a copy, unlike in other loads, as in 1.0.0
         self.acc_gravity = three("acc_gravity", acc_gravity).copy()
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
@@ -56,14 +56,14 @@ class GravityForces(NoForces):
 
 
 class EndpointForces(NoForces):
-    """Forces on the first and on the last node, growing linearly until ``ramp_up_time``.
+    """Forces on the first and last node, growing linearly until ``ramp_up_time``.
 
     Parameters
     ----------
     start_force, end_force : array_like
-        [N], (3,); arrays are followed if they change between runs or callbacks.
+        [N], (3,); changes to arrays between runs or callbacks take effect.
     ramp_up_time : float
-        [s], 0 for full strength from the start.
+        [s]; 0 for full force from the start.
     """
 
     def __init__(self, start_force: ArrayLike, end_force: ArrayLike, ramp_up_time: float = 0.0) -> None:
@@ -92,9 +92,9 @@ class EndpointForces(NoForces):
 
 
 class EndpointForcesSinusoidal(NoForces):
-    """Forces on the ends that turn around in the plane across a tangent, once in 4 s.
+    """Forces on the ends that rotate in the plane across a tangent, once in 4 s.
 
-    Until ``ramp_up_time`` each is -2 times its magnitude along the normal; from then on, with T the
+    Until ``ramp_up_time`` each is -2 times its magnitude along the normal; afterwards, with T the
     time since, cos(pi T/2) along normal x tangent and sin(pi T/2) along the normal.
 
     Parameters
@@ -150,7 +150,7 @@ class UniformForces(NoForces):
     Parameters
     ----------
     force : float
-        All of it [N].
+        Total [N].
     direction : array_like
         Unit vector, (3,).
     """
@@ -159,7 +159,7 @@ class UniformForces(NoForces):
         self.force = as_number("force", force) * three("direction", direction)[:, None]
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
-        """Add an equal part to each element, half of it on each node."""
+        """Add an equal share to each element, half on each node."""
         system.external_forces += self.force * _shares(system)
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
@@ -173,7 +173,7 @@ class UniformTorques(NoForces):
     Parameters
     ----------
     torque : float
-        All of it [N m].
+        Total [N m].
     direction : array_like
         Unit vector, (3,).
     """
@@ -182,7 +182,7 @@ class UniformTorques(NoForces):
         self.torque = as_number("torque", torque) * three("direction", direction)
 
     def apply_torques(self, system: Any, time: float = 0.0) -> None:
-        """Add an equal part to each element."""
+        """Add an equal share to each element."""
         system.external_torques += np.einsum("ijk,j->ik", system.director_collection, self.torque / system.n_elems)
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
@@ -191,11 +191,11 @@ class UniformTorques(NoForces):
 
 
 class ReciprocalTension(NoForces):
-    """The tension in a rod that makes its loads those of a potential: an option, which the documented model lacks.
+    """Optional tension that makes a rod's internal loads conservative; the documented model lacks it.
 
-    In the documented model, couples go with 1/E^3 of the dilatation at a joint, forces with 1/e and spins with J/e,
-    but nothing resists the stretch by which they change. So thick rods that stretch and bend gain or lose energy,
-    and stiff ones may flutter. With it, a free rod keeps the sum of its kinetic energy, of
+    In the documented model, couples scale with 1/E^3 of the dilatation at a joint, forces with 1/e and spins with J/e,
+    but no tension opposes the stretch that changes them. Thick rods that stretch and bend therefore gain or lose
+    energy, and stiff ones may flutter. With it, a free rod conserves the sum of its kinetic energy, of
     sum (kappa - kappa^).B (kappa - kappa^) D^/(2 E^3) and of sum (sigma - sigma^).S (sigma - sigma^) l^/(2 e).
     """
 
@@ -211,7 +211,7 @@ class ReciprocalTension(NoForces):
             )
         )
         bend *= 0.75 / system.voronoi_dilatation**4
-        # a joint is between two elements; a ring's last is that before its first element
+        # joints are between elements; the last joint of a ring is the one before its first element
         around = bend + np.roll(bend, 1) if system.ring_rod_flag else np.append(bend, 0.0) + np.append(0.0, bend)
         tension = 0.5 * (spin / system.rest_lengths - shear) / system.dilatation**2 - around
         force = tension * system.tangents
@@ -227,16 +227,16 @@ class ReciprocalTension(NoForces):
 
 
 class MuscleTorques(NoForces):
-    """A travelling wave of muscle couple along a rod (Gazzola et al. 2018, section 5.2).
+    """A travelling wave of muscle couples along a rod (Gazzola et al. 2018, section 5.2).
 
-    With s the arc length of an element's end over the whole, the couple between two elements is
+    With s the relative arc length of an element's end, the couple between two elements is
     min(1, t/ramp) beta(s) sin(2 pi t/period - k s + phase) along ``direction``, taken in reverse order
     along the rod; equal and opposite on the two.
 
     Parameters
     ----------
     base_length : float
-        Length of the rod; without effect, since s is divided by the sum of ``rest_lengths`` [m].
+        Length of the rod [m]; unused, since s is divided by the sum of ``rest_lengths``.
     b_coeff : array_like
         Control coefficients of beta, a cubic B-spline, at least four [N m].
     period : float
@@ -246,13 +246,13 @@ class MuscleTorques(NoForces):
     phase_shift : float
         [rad]
     direction : array_like
-        Of the couple in the lab, (3,); an array is followed if it changes between runs or callbacks.
+        Direction of the couple in the lab, (3,); changes to an array between runs or callbacks take effect.
     rest_lengths : array_like
-        Of the rod's elements [m], (n,).
+        Rest lengths of the rod's elements [m], (n,).
     ramp_up_time : float
-        Time of linear growth to full strength, 0 for none [s].
+        Duration of the linear ramp to full strength, 0 for none [s].
     with_spline : bool
-        Whether beta is the spline, or 1 N m throughout.
+        Whether beta is the spline or 1 N m throughout.
     """
 
     def __init__(
@@ -281,11 +281,11 @@ class MuscleTorques(NoForces):
         self.my_spline = beta_spline(coefficients, self.s) if with_spline else np.ones_like(self.s)
 
     def profiles(self) -> tuple[Array, Array]:
-        """Return what multiplies sin and cos of 2 pi t/period: couples between elements [N m], (n - 1,)."""
+        """Return the amplitudes of sin and cos of 2 pi t/period: couples between elements [N m], (n - 1,)."""
         return wave_profiles(self.s, self.my_spline, self.wave_number, self.phase_shift)
 
     def apply_torques(self, system: Any, time: float = 0.0) -> None:
-        """Add each couple to the element behind it, and its opposite to the one before."""
+        """Add each couple to the element after it, and its opposite to the one before."""
         self.compute_muscle_torques(
             time,
             self.my_spline,
@@ -312,7 +312,7 @@ class MuscleTorques(NoForces):
         director_collection: Array,
         external_torques: Array,
     ) -> None:
-        """Add each couple to the torque, (3, n), of the element behind it, and its opposite to the one before."""
+        """Add each couple to the torque, (3, n), of the element after it, and its opposite to the one before."""
         growth = min(1.0, time / ramp_up_time) if ramp_up_time > 0.0 else 1.0
         sine, cosine = wave_profiles(s, my_spline, wave_number, phase_shift)
         angle = angular_frequency * time
@@ -335,21 +335,21 @@ class MuscleTorques(NoForces):
 
 
 def inplace_addition(external_force_or_torque: Array, force_or_torque: Array) -> None:
-    """Add loads to a system's, (3, n)."""
+    """Add loads to a system's loads, (3, n)."""
     external_force_or_torque += force_or_torque
 
 
 def inplace_subtraction(external_force_or_torque: Array, force_or_torque: Array) -> None:
-    """Take loads from a system's, (3, n)."""
+    """Subtract loads from a system's loads, (3, n)."""
     external_force_or_torque -= force_or_torque
 
 
-# as it was spelled before 1.0
+# spelling before 1.0
 inplace_substraction = inplace_subtraction
 
 
 def _shares(system: Any) -> Array:
-    """Return the part of a uniform force that each node gets."""
+    """Return the share of a uniform force on each node."""
     shares = np.full(system.n_nodes, 1.0 / system.n_elems)
     if system.n_nodes == system.n_elems + 1:
         shares[0] = shares[-1] = 0.5 / system.n_elems

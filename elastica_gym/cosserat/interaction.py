@@ -1,4 +1,4 @@
-"""What rods meet in their surroundings: planes, and a viscous fluid."""
+"""Surroundings of rods: planes and a viscous fluid."""
 
 from typing import Any
 
@@ -23,7 +23,7 @@ from .not_offered import refuse_methods, refuse_names
 
 @refuse_methods
 class InteractionPlane(NoForces):
-    """A plane without friction: answers to the force that presses on it, to penetration and to approach.
+    """A plane without friction: balances the force pressing on it, and resists penetration and approach.
 
     Parameters
     ----------
@@ -32,8 +32,8 @@ class InteractionPlane(NoForces):
     nu : float
         Damping force per velocity along the normal [N s/m].
     plane_origin, plane_normal : array_like
-        A point of it [m], and its normal towards the free side, of any length; (3,) or (3, 1). Arrays are followed
-        if they change between runs or callbacks.
+        A point on it [m], and its normal towards the free side, of any length; (3,) or (3, 1). Changes to arrays
+        between runs or callbacks take effect.
     surface_tol : float, optional
         Gap below which an element is in contact [m]; 1e-4 m unless given, but at most a twentieth of its radius.
     """
@@ -45,12 +45,12 @@ class InteractionPlane(NoForces):
     ) -> None:
         self.k, self.nu, self.surface_tol = as_number("k", k), as_number("nu", nu), surface_tol
         self.plane_origin, self.plane_normal = three("plane_origin", plane_origin), three("plane_normal", plane_normal)
-        # refuses what cannot be
+        # raises if an argument is invalid
         self.plane  # noqa: B018
 
     @property
     def plane(self) -> surroundings.Plane:
-        """The plane as the compiled step knows it."""
+        """The plane as the compiled step reads it."""
         return surroundings.Plane(
             stiffness=self.k,
             damping=self.nu,
@@ -64,7 +64,7 @@ class InteractionPlane(NoForces):
         return {}
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
-        """Add the plane's response to all loads so far, and its friction."""
+        """Add the plane's response to all previous loads, and its friction."""
         act(self.lower, system)
 
     def lower(self, builder: SceneBuilder, system: Any) -> None:
@@ -73,7 +73,7 @@ class InteractionPlane(NoForces):
 
 
 class InteractionPlaneRigidBody(InteractionPlane):
-    """A plane without friction for cylinders and spheres; `CylinderPlaneContact` by another name.
+    """A plane without friction for cylinders and spheres; another name of `CylinderPlaneContact`.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class AnisotropicFrictionalPlane(InteractionPlane):
     k, nu, plane_origin, plane_normal, surface_tol
         As for `InteractionPlane`.
     slip_velocity_tol : float
-        Slip velocity up to which friction is static; from twice of it on it is kinetic [m/s].
+        Slip velocity up to which friction is static; above twice this it is kinetic [m/s].
     static_mu_array, kinetic_mu_array : array_like
         Coefficients forward (along the tangent), backward and sideways, (3,).
     """
@@ -133,7 +133,7 @@ class SlenderBodyTheory(NoForces):
         self.dynamic_viscosity = float(dynamic_viscosity)
 
     def apply_forces(self, system: Any, time: float = 0.0) -> None:
-        """Add -4 pi mu l/ln(L/r) (I - t t^T/2) v on each element, half of it to each node."""
+        """Add -4 pi mu l/ln(L/r) (I - t t^T/2) v on each element, half to each node."""
         force = slender_body_forces(
             system.tangents,
             system.velocity_collection,
@@ -152,7 +152,7 @@ class SlenderBodyTheory(NoForces):
 
 
 def friction_of(law: Any) -> dict[str, Any]:
-    """Return the anisotropic friction of a plane in PyElastica's names, in those of `surroundings.Plane`."""
+    """Translate anisotropic friction from PyElastica's names to those of `surroundings.Plane`."""
     return {
         "slip_tolerance": law.slip_velocity_tol,
         "static_friction": _triple(law.static_mu_array),
@@ -170,11 +170,11 @@ def slender_body_forces(
 
 
 def sum_over_elements(input: Array) -> np.float64:
-    """Return the sum of what elements have, (n,)."""
+    """Return the sum over elements, (n,)."""
     return input.sum()
 
 
-# by their names in 0.2.x
+# names in 0.2.x
 elements_to_nodes_inplace = _elements_to_nodes_inplace
 find_slipping_elements = _find_slipping_elements
 node_to_element_pos_or_vel = _node_to_element_position

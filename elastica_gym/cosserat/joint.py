@@ -28,9 +28,9 @@ End = tuple[Any, int, Any, int]
 
 
 class ConnectionBase(ABC):
-    """Base class of what connects two systems; write your own by overriding both methods.
+    """Base class of connections between two systems; write your own by overriding both methods.
 
-    They are called once in each step (in each stage of PEFRL), after the systems have moved, and add to
+    They are called once per step (per stage of PEFRL), after the drift, and add to
     their ``external_forces`` [N], lab frame, and ``external_torques`` [N m], material frame.
     """
 
@@ -72,7 +72,7 @@ class FreeJoint(ConnectionBase):
     def apply_torques(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
     ) -> None:
-        """Do nothing: the joint turns freely."""
+        """Do nothing: the joint rotates freely."""
 
     def lower(self, builder: SceneBuilder, ends: End) -> None:
         """Write a joint."""
@@ -92,7 +92,7 @@ class HingeJoint(FreeJoint):
     kt : float
         Torque per sine of the angle out of the plane [N m].
     normal_direction : array_like
-        h, the normal of the plane, fixed in the lab; of any length, (3,).
+        h, the normal of the plane, fixed in the lab, of any length, (3,).
     """
 
     def __init__(self, k: float, nu: float, kt: float, normal_direction: ArrayLike) -> None:
@@ -105,7 +105,7 @@ class HingeJoint(FreeJoint):
     def apply_torques(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
     ) -> None:
-        """Add the torque to two, and its opposite to one."""
+        """Add the torque to system two, and its opposite to system one."""
         d3, h = system_two.director_collection[2, :, index_two], self.normal_direction
         _twist(system_one, index_one, system_two, index_two, -self.kt * np.dot(d3, h) * np.cross(d3, h))
 
@@ -115,7 +115,7 @@ class HingeJoint(FreeJoint):
 
 
 class FixedJoint(FreeJoint):
-    """A joint that holds the directions of two elements at a rest rotation, twist included.
+    """A joint that holds the relative rotation of two elements, including twist.
 
     Parameters
     ----------
@@ -126,8 +126,7 @@ class FixedJoint(FreeJoint):
     nut : float
         Torque per relative angular velocity [N m s].
     rest_rotation_matrix : Array, optional
-        C with Q1 = C Q2 at rest, (3, 3); the identity unless given. It is followed if it changes between runs
-        or callbacks.
+        C with Q1 = C Q2 at rest, (3, 3); default identity. Changes between runs or callbacks take effect.
     """
 
     def __init__(
@@ -163,7 +162,7 @@ class FixedJoint(FreeJoint):
 
 
 class _ContactAsJoint(FreeJoint):
-    """Contact under the names of 0.2.x, declared by ``connect`` without indices."""
+    """Contact under its names of 0.2.x, declared by ``connect`` without indices."""
 
     IS_COMPILED = True
 
@@ -199,7 +198,7 @@ class ExternalContact(_ContactAsJoint):
         self._friction = (velocity_damping_coefficient, friction_coefficient)
 
     def contact_with(self, system_two: Any) -> NoContact:
-        """Return the contact with a second system, by its type."""
+        """Return the contact with a second system, chosen by its type."""
         if isinstance(system_two, RodBase):
             return RodRodContact(self.k, self.nu)
         kind = RodSphereContact if isinstance(system_two, Sphere) else RodCylinderContact
@@ -221,17 +220,17 @@ class SelfContact(_ContactAsJoint):
 
 
 def get_relative_rotation_two_systems(system_one: Any, index_one: int, system_two: Any, index_two: int) -> Array:
-    """Return Q1 Q2^T, which as ``rest_rotation_matrix`` keeps two systems as they are, (3, 3)."""
+    """Return Q1 Q2^T, the ``rest_rotation_matrix`` that keeps the current relative rotation, (3, 3)."""
     return system_one.director_collection[..., index_one] @ system_two.director_collection[..., index_two].T
 
 
 def _twist(system_one: Any, index_one: Any, system_two: Any, index_two: Any, torque: Array) -> None:
-    """Add a torque of the lab frame to system two, and its opposite to one."""
+    """Add a torque in the lab frame to system two, and its opposite to system one."""
     system_one.external_torques[..., index_one] -= system_one.director_collection[..., index_one] @ torque
     system_two.external_torques[..., index_two] += system_two.director_collection[..., index_two] @ torque
 
 
-# by their names in 0.2.x
+# names in 0.2.x
 _prune_using_aabbs_rod_rigid_body = _prune_using_aabbs_rod_cylinder
 
 __getattr__ = refuse_names(__name__)

@@ -1,4 +1,4 @@
-"""Keywords that a constructor does not know: as in PyElastica they are ignored, but with a warning."""
+"""Unknown keywords of constructors: ignored as in PyElastica, but with a warning."""
 
 import difflib
 import inspect
@@ -9,19 +9,19 @@ NAMED = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
 
 
 def warn_of_unknown(what: str, given: Iterable[str], known: Iterable[str]) -> None:
-    """Warn of each keyword given to ``what`` that is not known, and name the nearest one that is."""
+    """Warn of each unknown keyword given to ``what``, and suggest the nearest known one."""
     known = list(known)
     for name in given:
         if name not in known:
             nearest = difflib.get_close_matches(name, known, n=1)
-            hint = f"did you mean {nearest[0]}?" if nearest else f"it knows {', '.join(known) or 'none'}"
+            hint = f"did you mean {nearest[0]}?" if nearest else f"known keywords: {', '.join(known) or 'none'}"
             warnings.warn(f"{what} ignores the unknown keyword {name}; {hint}", UserWarning, stacklevel=3)
 
 
 def known_keywords(cls: type) -> list[str] | None:
-    """Return the keywords that a class of the library and its bases take, None if others are not ignored.
+    """Return the keywords that a library class and its bases accept, None if others are not ignored.
 
-    A class whose constructor is a user's own is left to it, and one without ``**kwargs`` refuses them itself.
+    A user's own constructor handles its keywords, and one without ``**kwargs`` raises by itself.
     """
     constructor = cls.__init__  # type: ignore[misc]
     if not getattr(constructor, "__module__", "").startswith(str(__package__)):

@@ -1,7 +1,7 @@
-"""From features that a user declared to the tables of a Scene that the compiled step reads.
+"""Lower a user's declared features to the tables of a Scene, which the compiled step reads.
 
-A feature that has a method ``lower(builder, ...)`` writes its own rows here. A user's subclass of it
-that overrides what is called every step is not lowered: the step calls it instead.
+A feature with a method ``lower(builder, ...)`` writes its own rows here. A user's subclass that
+overrides a method called every step is not lowered: the step calls it instead.
 """
 
 from collections.abc import Callable, Sequence
@@ -35,16 +35,16 @@ from .rod.rod_base import RodBase
 
 ALWAYS = -np.inf
 CACHED = 1024
-"""Slots that the stages of strains take at a time: their 70 rows fit half of a second-level cache of 1 MB"""
+"""Slots that the strain stages process at a time: their 70 rows fill half of a 1 MB L2 cache"""
 STRAY = 0.2
-"""How far an element may move before pairs that may touch are listed anew, in the smallest radius"""
+"""Displacement of an element, in smallest radii, after which the neighbour list is rebuilt"""
 
 
 def is_built_in(cls: type, methods: Sequence[str]) -> bool:
-    """Return whether features of a class can be lowered: no subclass has overridden what it does.
+    """Return whether features of a class can be lowered: no subclass overrides their methods.
 
-    A user's subclass is called even if it has not: it is there to be changed during a run. What has no implementation
-    but the compiled one is lowered all the same.
+    A user's subclass is called even if it overrides nothing, since it may change during a run. Features with only a
+    compiled implementation are always lowered.
     """
     if not (cls.__module__.startswith(str(__package__)) or getattr(cls, "IS_COMPILED", False)):
         return False
@@ -60,21 +60,21 @@ class _Span(NamedTuple):
 
 
 class SceneBuilder:
-    """Rows of a Scene in the making.
+    """Builder of a Scene's rows.
 
     Parameters
     ----------
     model : Model
-        Of all rods.
+        Model of all rods.
     rods, bodies : sequence
-        In the order of the model.
+        Systems in the order of the model.
     """
 
     def __init__(self, model: Model, rods: Sequence[Any], bodies: Sequence[Any] = ()) -> None:
         self._slots = model.mass.size
         self._starts = model.first_slot
         self._end = -(-int(model.first_slot[-1] + model.n_elements[-1] + 1) // BLOCK) * BLOCK
-        # (bodies alone have a bystander in the model)
+        # without rods, the model contains a dummy rod
         self._first = {id(rod): int(start) for rod, start in zip(rods, model.first_slot, strict=bool(rods))}
         self._body = {id(body): number for number, body in enumerate(bodies)}
         self._body_force, self._body_torque = np.zeros((len(bodies), 3)), np.zeros((len(bodies), 3))
@@ -99,16 +99,16 @@ class SceneBuilder:
         self._body_rate, self._body_turn_rate = np.zeros(len(bodies)), np.zeros((len(bodies), 3))
         self._filters: list[tuple[_Span, int, bool]] = []
 
-    # where things are
+    # indices
 
     def node(self, system: Any, index: int) -> int:
-        """Return the place of a node, counted from the end if ``index`` is negative."""
+        """Return the slot of a node, counted from the end if ``index`` is negative."""
         if id(system) in self._body:
             return -1 - self._body[id(system)]
         return self._first[id(system)] + _index("node", index, system.n_nodes)
 
     def element(self, system: Any, index: int) -> int:
-        """Return the place of an element, counted from the end if ``index`` is negative."""
+        """Return the slot of an element, counted from the end if ``index`` is negative."""
         if id(system) in self._body:
             return -1 - self._body[id(system)]
         return self._first[id(system)] + _index("element", index, system.n_elems)
@@ -137,19 +137,19 @@ class SceneBuilder:
         sine: ArrayLike = (0.0, 0.0, 0.0),
         angular_frequency: float = 0.0,
     ) -> None:
-        """Add a force on a node; `PointLoads` says what the arguments mean."""
+        """Add a force on a node; see `PointLoads` for the arguments."""
         vectors = [np.ravel(v) for v in (growing, before, cosine, sine)]
         self._point_loads.append((self.node(system, index), ramp_time, *vectors, angular_frequency))
 
     def add_dead_force(self, system: Any, force: ArrayLike) -> None:
-        """Add a force that is constant in the lab on each node of a system [N], (3, n + 1)."""
+        """Add a force constant in the lab on each node of a system [N], (3, n + 1)."""
         if id(system) in self._body:
             self._body_force[self._body[id(system)]] += np.ravel(force)
         else:
             self._dead_force[:, self.nodes(system)] += force
 
     def add_dead_torque(self, system: Any, torque: ArrayLike) -> None:
-        """Add a torque that is constant in the lab on each element of a system [N m], (3, n)."""
+        """Add a torque constant in the lab on each element of a system [N m], (3, n)."""
         if id(system) in self._body:
             self._body_torque[self._body[id(system)]] += np.ravel(torque)
         else:
@@ -158,7 +158,7 @@ class SceneBuilder:
     def add_wave(
         self, system: Any, *, axis: Array, angular_frequency: float, ramp_time: float, sine: Array, cosine: Array
     ) -> None:
-        """Add a travelling wave of couples at Voronoi points [N m], (n - 1,); `Waves` says how they vary."""
+        """Add a travelling wave of couples at Voronoi points [N m], (n - 1,); see `Waves`."""
         key = (*np.ravel(axis).tolist(), float(angular_frequency), float(ramp_time))
         if key not in self._waves:
             self._waves[key] = (aligned_zeros((self._slots,)), aligned_zeros((self._slots,)), [])
@@ -174,7 +174,7 @@ class SceneBuilder:
         self._flows.append((_Span(where.start, where.stop), viscosity))
 
     def add_tension(self, system: Any) -> None:
-        """Make the loads of a rod those of a potential."""
+        """Make the internal loads of a rod conservative."""
         where = self.elements(system)
         self._tensions.append((_Span(where.start, where.stop), system.ring_rod_flag))
 
@@ -184,11 +184,11 @@ class SceneBuilder:
         self._drag_torque[self.elements(system)] += torque
 
     def add_plane(self, system: Any, plane: Plane) -> None:
-        """Let a system touch a plane."""
+        """Add contact of a system with a plane."""
         _require_open(system, "plane")
         where = self.nodes(system)
         span = _Span(where.start, where.stop)
-        # rods that follow each other on the same plane are one row
+        # consecutive rods on the same plane share a row
         if self._planes and self._planes[-1][0] == plane and self._planes[-1][1].last == span.first:
             span = _Span(self._planes.pop()[1].first, span.last)
         self._planes.append((plane, span))
@@ -207,7 +207,7 @@ class SceneBuilder:
         turn_damping: float = 0.0,
         rest_rotation: ArrayLike | None = None,
     ) -> None:
-        """Add a joint between two systems and indices; `Joints` says what the arguments mean."""
+        """Add a joint between two systems at indices; see `Joints` for the arguments."""
         one, i, two, j = ends
         turns = hinge_stiffness != 0.0 or turn_stiffness != 0.0 or turn_damping != 0.0
         elements = (self.element(one, i), self.element(two, j)) if turns else (0, 0)
@@ -235,7 +235,7 @@ class SceneBuilder:
         towards: ArrayLike,
         offset: float,
     ) -> None:
-        """Join two elements side by side; `Sides` says what the arguments mean."""
+        """Join two elements side by side; see `Sides` for the arguments."""
         one, i, two, j = ends
         _require_rod(one)
         _require_rod(two)
@@ -253,7 +253,7 @@ class SceneBuilder:
         start_time: float = ALWAYS,
         velocity: ArrayLike = (0.0, 0.0, 0.0),
     ) -> None:
-        """Prescribe the motion of a node; `Pins` says what the arguments mean."""
+        """Prescribe the motion of a node; see `Pins` for the arguments."""
         row = (self.node(system, index), start_time, np.ravel(velocity), np.array(axes, dtype=float), position)
         self._pins.append(row)
 
@@ -267,7 +267,7 @@ class SceneBuilder:
         start_time: float = ALWAYS,
         omega: ArrayLike = (0.0, 0.0, 0.0),
     ) -> None:
-        """Prescribe the rotation of an element; `Clamps` says what the arguments mean."""
+        """Prescribe the rotation of an element; see `Clamps` for the arguments."""
         held = np.eye(3) if directors is None else directors
         self._clamps.append(
             (
@@ -285,21 +285,21 @@ class SceneBuilder:
     def add_body_contact(
         self, rod: Any, body: Any, *, stiffness: float, damping: float, friction: float = 0.0, slip_damping: float = 0.0
     ) -> None:
-        """Let a rod and a rigid body touch; `BodyContacts` says what the arguments mean."""
+        """Add contact of a rod with a rigid body; see `BodyContacts` for the arguments."""
         _require_open(rod, "rigid body")
         where = self.elements(rod)
         row = (_Span(where.start, where.stop), self._body[id(body)], stiffness, damping, friction, slip_damping)
         self._body_contacts.append(row)
 
     def add_rod_contact(self, one: Any, two: Any, *, stiffness: float, damping: float) -> None:
-        """Let two rods touch, or one itself; `RodContacts` says what the arguments mean."""
+        """Add contact of two rods, or of one with itself; see `RodContacts` for the arguments."""
         _require_open(one, "rod")
         _require_open(two, "rod")
         i, j = self._number[id(one)], self._number[id(two)]
         self._rod_contacts.add((min(i, j), max(i, j), float(stiffness), float(damping)))
 
     def add_body_plane(self, body: Any, plane: Plane, friction: float) -> None:
-        """Let a rigid body touch a plane with a coefficient of Coulomb friction."""
+        """Add contact of a rigid body with a plane, with a coefficient of Coulomb friction."""
         self._body_planes.append((plane, self._body[id(body)], friction))
 
     # dampers
@@ -307,7 +307,7 @@ class SceneBuilder:
     def add_decay(
         self, system: Any, *, node_rate: ArrayLike, element_rate: ArrayLike = 0.0, dilating_rate: ArrayLike = 0.0
     ) -> None:
-        """Add exponential decay of velocities [1/s]; `Decay` says what the arguments mean."""
+        """Add exponential decay of velocities [1/s]; see `Decay` for the arguments."""
         if id(system) in self._body:
             number = self._body[id(system)]
             self._body_rate[number] += np.squeeze(node_rate)
@@ -318,15 +318,15 @@ class SceneBuilder:
         self._dilating_rate[:, self.elements(system)] += dilating_rate
 
     def add_filter(self, system: Any, order: int) -> None:
-        """Add a filter of the shortest waves."""
+        """Add a filter that removes the shortest waves."""
         where = self.nodes(system)
         self._filters.append((_Span(where.start, where.stop), order, system.ring_rod_flag))
 
-    # the tables
+    # tables
 
     @property
     def loading(self) -> int:
-        """Where anything acts from outside, but planes on rods: UNLOADED, SPARSE or DENSE."""
+        """Where external loads other than planes on rods act: UNLOADED, SPARSE or DENSE."""
         rows = (self._waves, self._flows, self._tensions, self._sides, self._rod_contacts, self._body_contacts)
         if any(map(len, rows)) or self._dead_force.any() or self._dead_torque.any():
             return DENSE
@@ -400,7 +400,7 @@ class SceneBuilder:
         )
 
     def _blocks(self) -> list[_Span]:
-        """Return the slots of as many rods at a time as stay in the cache, in whole blocks at the end."""
+        """Return spans of slots, each of as many rods as fit the cache; the last one is padded to whole blocks."""
         blocks: list[_Span] = []
         for first, end in pairwise([*self._starts.tolist(), self._end]):
             if blocks and end - blocks[-1].first <= CACHED:
@@ -418,7 +418,7 @@ class SceneBuilder:
             nodes = self.nodes(rod)
             rod_of[nodes] = number
             last_other[nodes] = nodes.start - 1
-            # an element and its neighbour never do
+            # adjacent elements never touch
             last_clear[nodes] = np.arange(nodes.start, nodes.stop) - 2 if number in touching_themselves else -1
         touching = [self._rods[number] for number in sorted({number for pair in pairs for number in pair[:2]})]
         spans = [self.elements(rod) for rod in touching]
@@ -467,7 +467,7 @@ def _spans(rows: Sequence[tuple[int, int]]) -> Index:
 
 
 def _table(cls: Callable, rows: Sequence[tuple], *columns: str) -> Any:
-    """Return a table of rows, its columns as described: ``i`` for integers, then a digit for each dimension."""
+    """Return a table of rows; a column is ``i`` for integers, then a digit for each dimension."""
     fields = []
     for position, column in enumerate(columns):
         shape = tuple(int(digit) for digit in column.removeprefix("i"))

@@ -1,7 +1,7 @@
-"""Names of PyElastica that this library does not have: they can be imported, and say what to use instead when used.
+"""Names of PyElastica that this library lacks: they can be imported, and raise an error naming a replacement when used.
 
-Most are parts of how PyElastica computes, which is compiled here in another way. A module that has some of them
-sets ``__getattr__ = refuse_names(__name__)``; a module of which nothing is left is found by `_Finder`.
+Most are PyElastica internals, which are compiled differently here. A module with some of them sets
+``__getattr__ = refuse_names(__name__)``; a module with no other names is found by `_Finder`.
 """
 
 import sys
@@ -14,20 +14,20 @@ from typing import Any, NoReturn
 LIBRARY = str(__package__)
 
 CONTACT = "contact is part of the compiled step: simulator.detect_contact_between(one, two).using(RodRodContact, ...)"
-DECLARED = "what a simulator's methods return has the method using(cls, ...)"
-MEMORY = "a simulator keeps its systems in memory of its own, without blocks; rods and bodies have the same attributes"
-STAGES = "CosseratRod.update_accelerations and the attributes of rods are computed without them"
-STEPPERS = "PositionVerlet and PEFRL are there; a stepper's own method is step(simulator, time, dt)"
+DECLARED = "a simulator's methods return an object with the method using(cls, ...)"
+MEMORY = "a simulator has its own memory for systems, without blocks; rods and bodies have the same attributes"
+STAGES = "CosseratRod.update_accelerations and the attributes of rods do not need it"
+STEPPERS = "use PositionVerlet or PEFRL, and their method step(simulator, time, dt)"
 EXPLICIT = "there is no explicit stepper: use PositionVerlet or PEFRL"
-CHECKS = "constructors check what they are given themselves"
+CHECKS = "constructors check their arguments themselves"
 MAKE = "CosseratRod.straight_rod and CosseratRod.ring_rod make rods"
 SKEW = "_skew_symmetrize and _inv_skew_symmetrize make and read skew matrices"
 FILTER = "LaplaceDissipationFilter filters velocities"
-PLANE = "InteractionPlane and AnisotropicFrictionalPlane answer to the net force, inside the compiled step"
+PLANE = "InteractionPlane and AnisotropicFrictionalPlane compute the response inside the compiled step"
 BODY_PLANE = "CylinderPlaneContact is contact of a cylinder with a plane, with a friction_coefficient"
 KNOTS = "compute_twist, compute_writhe and compute_link take the same arguments"
-RINGS = "rings are closed inside the compiled step; declare constraints of your own by simulator.constrain(ring)"
-CONSTRAINT = "constrain_values(system, time) and constrain_rates(system, time) do what it did"
+RINGS = "rings are closed inside the compiled step; declare your own constraints by simulator.constrain(ring)"
+CONSTRAINT = "use constrain_values(system, time) and constrain_rates(system, time)"
 EXAMPLES = "these systems are tests of PyElastica's own"
 
 TABLE = {
@@ -224,13 +224,13 @@ TABLE = {
     "wrappers.forcing": {"_ExtForceTorque": DECLARED},
     "wrappers.memory_block": {"construct_memory_block_structures": MEMORY},
 }
-"""Names that are not there, by module, and what to use instead"""
+"""Names not offered, by module, and their replacements"""
 
 METHODS = {
     "BaseSystemCollection": {
         "enable_block_supports": MEMORY,
         "block_systems": MEMORY,
-        "synchronize": "loads are computed inside the step: PositionVerlet().step(simulator, time, dt) takes one",
+        "synchronize": "loads are computed inside the step: use PositionVerlet().step(simulator, time, dt)",
     },
     "GeneralConstraint": dict.fromkeys(
         (
@@ -243,23 +243,23 @@ METHODS = {
     ),
     "InteractionPlane": {"apply_normal_force": PLANE},
     "SurfaceJointSideBySide": {
-        "_apply_forces": "apply_forces adds them",
-        "_apply_torques": "apply_torques adds them",
+        "_apply_forces": "use apply_forces",
+        "_apply_torques": "use apply_torques",
     },
     "SymplecticStepper": dict.fromkeys(
         ("get_steps", "get_prefactors", "step_methods", "step_single_instance"), STEPPERS
     ),
 }
-"""Methods that are not there, by class, and what to use instead"""
+"""Methods not offered, by class, and their replacements"""
 
 
 class NotOffered(type):
-    """What stands for a name that is not there: a class that cannot be used, and is nobody's."""
+    """Metaclass of stand-ins for names not offered: classes without instances or subclasses."""
 
     message: str
 
     def __call__(cls, *args: Any, **kwargs: Any) -> NoReturn:
-        """Refuse."""
+        """Raise NotImplementedError."""
         raise NotImplementedError(cls.message)
 
     def __getattr__(cls, name: str) -> NoReturn:
@@ -267,7 +267,7 @@ class NotOffered(type):
 
 
 def stand_in(name: str, instead: str) -> NotOffered:
-    """Return what stands for a name, with its full path, that is not there."""
+    """Return the stand-in for a name not offered, given with its full path."""
     message = f"{name} of PyElastica is not offered by elastica_gym: {instead}"
 
     def refuse(cls: type, **kwargs: Any) -> NoReturn:
@@ -278,7 +278,7 @@ def stand_in(name: str, instead: str) -> NotOffered:
 
 
 def refuse_names(module: str) -> Callable[[str], Any]:
-    """Return a module's ``__getattr__``, which gives stand-ins for the names of the table."""
+    """Return a module's ``__getattr__``, which returns stand-ins for the names in the table."""
     path = module.removeprefix(LIBRARY).lstrip(".")
     names, made = TABLE[path], dict[str, NotOffered]()
 
@@ -291,14 +291,14 @@ def refuse_names(module: str) -> Callable[[str], Any]:
 
 
 def refuse_methods(cls: type) -> type:
-    """Give a class stand-ins for the methods of the table."""
+    """Add stand-ins for the methods in the table to a class."""
     for name, instead in METHODS[cls.__name__].items():
         setattr(cls, name, stand_in(f"{cls.__name__}.{name}", instead))
     return cls
 
 
 class _Finder(MetaPathFinder, Loader):
-    """Finds modules of the table that do not exist as files."""
+    """Finds modules in the table that do not exist as files."""
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
         if not fullname.startswith(f"{LIBRARY}."):
@@ -309,10 +309,10 @@ class _Finder(MetaPathFinder, Loader):
         return ModuleSpec(fullname, self, is_package=any(each.startswith(f"{inner}.") for each in TABLE))
 
     def create_module(self, spec: ModuleSpec) -> None:
-        """Leave it to Python."""
+        """Use Python's default."""
 
     def exec_module(self, module: ModuleType) -> None:
-        module.__doc__ = "A module of PyElastica of which nothing is offered here."
+        module.__doc__ = "A module of PyElastica with no names offered here."
         module.__getattr__ = refuse_names(module.__name__)  # type: ignore[method-assign]
 
 

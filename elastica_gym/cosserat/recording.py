@@ -1,4 +1,4 @@
-"""Recordings of what the library simulates, for the rerun viewer.
+"""Recordings of the library's simulations, for the rerun viewer.
 
 A recording holds, on the timelines ``step`` and ``sim_time``:
 
@@ -7,9 +7,9 @@ A recording holds, on the timelines ``step`` and ``sim_time``:
 | ``/rods/<number>/body`` | a solid capsule for each element |
 | ``/rods/<number>/nodes`` | the nodes, inside the capsules |
 | ``/bodies/<number>`` | a solid cylinder or ball |
-| ``/energy/<kind>`` | translational, rotational, bending and shear energy of all that is recorded [J] |
+| ``/energy/<kind>`` | translational, rotational, bending and shear energy of all recorded systems [J] |
 
-Numbers are those of rods and of bodies, each from 0, in the order in which they are given.
+Rods and bodies are numbered separately from 0, in the order given.
 """
 
 import importlib
@@ -42,16 +42,16 @@ ENERGIES = ("translational", "rotational", "bending", "shear")
 
 
 class SystemRecorder:
-    """Collects how rods and rigid bodies move, and writes it as a recording.
+    """Collects the motion of rods and rigid bodies, and writes it as a recording.
 
     Parameters
     ----------
     name : str
-        How the viewer calls it.
+        Name in the viewer.
     """
 
     def __init__(self, name: str) -> None:
-        # without rerun, say so before the run rather than after it
+        # if rerun is missing, raise before the run rather than after it
         import_rerun()
         self._name = name
         self._step: list[int] = []
@@ -62,7 +62,7 @@ class SystemRecorder:
         self._energies: list[list[float]] = []
 
     def capture(self, systems: Sequence[Any], time: float, step: int) -> None:
-        """Append what is now; the systems are the same at each call."""
+        """Append the current state; the systems are the same at each call."""
         self._rods = [each for each in systems if isinstance(each, RodBase)]
         self._bodies = [each for each in systems if isinstance(each, RigidBodyBase)]
         self._step.append(step)
@@ -78,7 +78,7 @@ class SystemRecorder:
         self._energies.append([sum(_energy(each, kind) for each in (*self._rods, *self._bodies)) for kind in ENERGIES])
 
     def write(self, path: str | Path) -> Path:
-        """Write the recording, whole or not at all.
+        """Write the recording atomically.
 
         Raises
         ------
@@ -107,9 +107,9 @@ class SystemRecorder:
 
 
 def _energy(system: Any, kind: str) -> float:
-    """Return an energy of a system [J], of which rigid bodies have but two."""
+    """Return an energy of a system [J]; rigid bodies have only two kinds."""
     compute = getattr(system, f"compute_{kind}_energy", None)
-    # that of a body is an array of one, as in PyElastica
+    # a body's energy is an array of shape (1,), as in PyElastica
     return 0.0 if compute is None else float(np.sum(compute()))
 
 
@@ -152,7 +152,7 @@ def _log_body(
 
 
 def _blueprint(name: str) -> Any:
-    """Describe the layout: the scene, and beside it the energies, playing in real time."""
+    """Describe the layout: the scene next to the energies, played in real time."""
     rrb = importlib.import_module("rerun.blueprint")
     return rrb.Blueprint(
         rrb.Horizontal(

@@ -1,4 +1,4 @@
-"""Save a simulation and go on with it later, bit for bit."""
+"""Save a simulation and resume it later, bit for bit."""
 
 import json
 import os
@@ -13,25 +13,25 @@ META = "meta.json"
 
 
 def all_equal(iterable: Iterable[Any]) -> bool:
-    """Return whether all that an iterable gives is equal."""
+    """Return whether all elements of an iterable are equal."""
     return len(list(islice(groupby(iterable), 2))) < 2
 
 
 def save_state(
     simulator: Any, directory: str | os.PathLike = "saved", time: float = 0.0, verbose: bool = False
 ) -> None:
-    """Write motion and material of all systems to a folder, a file each.
+    """Write motion and material of all systems to a folder, one file each.
 
     Parameters
     ----------
     simulator : BaseSystemCollection
         Finalized.
     directory : path
-        Made if it is not there.
+        Created if missing.
     time : float
-        Time to remember [s].
+        Time to store [s].
     verbose : bool
-        Whether to say so.
+        Whether to print a message.
     """
     folder = Path(directory)
     folder.mkdir(parents=True, exist_ok=True)
@@ -44,14 +44,14 @@ def save_state(
 
 
 def load_state(simulator: Any, directory: str | os.PathLike = "saved", verbose: bool = False) -> float:
-    """Read what `save_state` wrote into a finalized simulator with the same systems, and return its time [s].
+    """Load files of `save_state` into a finalized simulator with the same systems, and return the time [s].
 
     Raises
     ------
     FileNotFoundError
         If a system has no file.
     ValueError
-        If a file is of a system of another size.
+        If a file belongs to a system of another size.
     """
     folder = Path(directory)
     meta = json.loads((folder / META).read_text())
@@ -64,7 +64,7 @@ def load_state(simulator: Any, directory: str | os.PathLike = "saved", verbose: 
                         f"the simulator's is {system._fields[name].shape}"
                     )
                 system._fields[name][...] = data[name]
-    # directors are corrected by this count, so it belongs to the state
+    # part of the state: directors are corrected every so many steps
     simulator.simulation.steps = meta["steps"]
     if verbose:
         print(f"loaded {folder} at {meta['time']} s")

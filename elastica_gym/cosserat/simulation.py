@@ -35,7 +35,7 @@ _BYSTANDER = Rod.straight(
     shear_modulus=1.0,
 )
 INTERVALS = ("every", "step_skip", "sample_every")
-"""Attributes of a callback that say how many steps are from one call to the next"""
+"""Attributes of a callback that set the steps between its calls"""
 
 CALLED = {
     "constraints": ("constrain_values", "constrain_rates"),
@@ -44,15 +44,15 @@ CALLED = {
     "contacts": ("apply_contact",),
     "damping": ("dampen_rates",),
 }
-"""What a step calls of a user's own features, by their kind"""
+"""Methods that a step calls on a user's own features, by kind"""
 
 Call = Callable[[float], None]
 
 
 class Hook:
-    """A way for compiled code to call Python functions of time, one after another.
+    """Calls Python functions of time in order from compiled code.
 
-    What they raise is kept, and the compiled code told to stop.
+    An exception is stored, and the compiled code stops.
     """
 
     _signature = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_double)
@@ -64,7 +64,7 @@ class Hook:
 
     @property
     def address(self) -> int:
-        """Address of the C function, 0 if there is nothing to call."""
+        """Address of the C function, 0 if there are no functions."""
         return int(ctypes.cast(self._function, ctypes.c_void_p).value or 0) if self.calls else 0
 
     def _run(self, time: float) -> int:
@@ -79,12 +79,12 @@ class Hook:
 
 
 class Callbacks:
-    """What is called between steps.
+    """Callbacks called between steps.
 
     Parameters
     ----------
     declared : sequence of Declaration
-        In the order in which they are called.
+        Callbacks in calling order.
     """
 
     def __init__(self, declared: Sequence[Declaration] = ()) -> None:
@@ -95,23 +95,23 @@ class Callbacks:
         return (callback for callback, _, _ in self._all)
 
     def call(self, time: float, step: int) -> None:
-        """Call those that are due after a number of steps."""
+        """Call the callbacks due after a number of steps."""
         for callback, observed, interval in self._all:
             if step % interval == 0:
                 callback.make_callback(observed, np.float64(time), step)
 
     def steps_to_next(self, step: int) -> int:
-        """Return how many steps are left from one until any is due."""
+        """Return the number of steps from a given one until any callback is due."""
         return min((interval - step % interval for _, _, interval in self._all), default=NEVER)
 
     def close(self) -> None:
-        """Tell them that the simulation is over."""
+        """Call ``on_close`` of all callbacks."""
         for callback in self:
             callback.on_close()
 
 
 class Simulation:
-    """All that a finalized simulator runs on.
+    """The compiled simulation of a finalized simulator.
 
     Parameters
     ----------
@@ -120,14 +120,14 @@ class Simulation:
     declared : mapping
         The features of each kind, as declared.
     callbacks : Callbacks, optional
-        Those of the systems.
+        Callbacks of the systems.
     names : mapping, optional
-        How messages call a system, by its identity; by its type alone unless given.
+        Names of systems in messages, by identity; default the type's name.
 
     Attributes
     ----------
     model, scene, state, control
-        What the compiled step reads and writes.
+        Data that the compiled step reads and writes.
     """
 
     def __init__(
@@ -141,7 +141,7 @@ class Simulation:
         self.bodies = [system for system in systems if isinstance(system, RigidBodyBase)]
         for rod in self.rods:
             rod._rest_as_built()
-        # a Model has a rod: bodies alone get one that is far from everything and feels nothing
+        # a Model needs a rod: bodies alone get a dummy that is far away and unloaded
         lowered: list[Continuum] = [_laid(rod) for rod in self.rods] or [_BYSTANDER]
         bodies: Any = [body._lowered() for body in self.bodies]
         self.model = build_model(lowered, cylinders=bodies, is_muscular=False)
@@ -154,7 +154,7 @@ class Simulation:
         self._names = names or {}
         self._constraints: list[tuple[Any, Any]] = []
         self._has_warned = self._is_judged = False
-        # the step and the place of the first motion that is found not to be finite, and the last step when all was
+        # step and slot of the first non-finite motion found, and the last step with finite motion
         self._broken, self._is_told = np.zeros(3, dtype=np.int64), False
 
         self._announced: set[float] = set()
@@ -169,10 +169,10 @@ class Simulation:
         for dt in self._announced:
             self._warn_of(dt)
 
-    # set up
+    # setup
 
     def _move_rods(self) -> Array:
-        """Let the rods' attributes be views of the simulation's memory, and return that of their material."""
+        """Make the rods' attributes views of the simulation's memory, and return the memory of their material."""
         material = np.zeros(sum(rod._fields[name].size for rod in self.rods for name in MATERIAL))
         used = 0
         s, c = self.state, self.control
@@ -199,7 +199,7 @@ class Simulation:
         return material
 
     def _move_bodies(self) -> None:
-        """Let the bodies' attributes be views of the simulation's memory."""
+        """Make the bodies' attributes views of the simulation's memory."""
         s = self.state
         for b, body in enumerate(self.bodies):
             body._move(
@@ -215,31 +215,31 @@ class Simulation:
             )
 
     def _lower(self) -> None:
-        """Write the tables of the scene from what the built-in features and the arrays that they follow are now."""
+        """Write the tables of the scene from the built-in features and the current values of their arrays."""
         builder = SceneBuilder(self.model, self.rods, self.bodies)
         for lower in self._lowerings:
             lower(builder)
         before, self.scene = getattr(self, "scene", None), builder.build()
         if before is not None:
-            # dampers are as they were at finalize, and what has been listed of contact serves on
+            # keep the dampers of finalize and the neighbour list
             self.scene = self.scene._replace(rod_contacts=before.rod_contacts, decay=before.decay, drag=before.drag)
         self._loading = DENSE if self._hooks["loads"].calls else builder.loading
         self._as_lowered = self._values()
 
     def _follow(self, *features: Any) -> None:
-        """Note the arrays that features hold, which their caller may change between two entries of compiled code."""
+        """Register the features' arrays, which the caller may change between calls of compiled code."""
         for feature in features:
             names = [name for name, value in vars(feature).items() if isinstance(value, np.ndarray)]
             self._followed[id(feature)] = feature, names
 
     def _values(self) -> bytes:
-        """Return what is in the arrays that are followed."""
+        """Return the contents of the followed arrays."""
         return b"".join(
             np.asarray(getattr(feature, name)).tobytes() for feature, names in self._followed.values() for name in names
         )
 
     def _add_constraints(self, declared: Sequence[Declaration]) -> None:
-        """Add constraints so that the last one wins: after a user's own on a system, built-in ones are called too."""
+        """Add constraints so that the last one wins: after a user's own, built-in ones on the system are called too."""
         called: set[int] = set()
         for declaration in declared:
             (system,) = declaration.systems
@@ -303,7 +303,7 @@ class Simulation:
     # run
 
     def begin(self) -> None:
-        """Apply constraints at time 0 and call back."""
+        """Apply constraints and call callbacks at time 0."""
         self.constrain_values(0.0)
         self.constrain_rates(0.0)
         self.callbacks.call(0.0, 0)
@@ -320,7 +320,7 @@ class Simulation:
 
     @property
     def steps(self) -> int:
-        """How many steps have been taken."""
+        """Number of steps taken."""
         return int(self.state.step[0])
 
     @steps.setter
@@ -328,7 +328,7 @@ class Simulation:
         self.state.step[0] = self._broken[2] = count
 
     def advance(self, scheme: Scheme, dt: float, n_steps: int, time: float) -> float:
-        """Take steps from a time on, without callbacks, and return the time after [s]."""
+        """Take steps from a time, without callbacks, and return the time afterwards [s]."""
         self.require_time_step(dt)
         if self.read_material() or self._values() != self._as_lowered:
             self._lower()
@@ -354,7 +354,7 @@ class Simulation:
         return float(self.state.time[0])
 
     def read_material(self) -> bool:
-        """Lay the rods' material out again if it has changed, and return whether it has."""
+        """Lay out the rods' material again if it has changed, and return whether it has."""
         if np.array_equal(self._material, self._as_laid_out):
             return False
         for rod, first in zip(self.rods, self.model.first_slot, strict=True):
@@ -363,7 +363,7 @@ class Simulation:
         return True
 
     def warn_of_divergence(self) -> None:
-        """Warn, once, if motion is not finite: of what since which step, within those between two looks."""
+        """Warn once if motion is not finite, naming the system and the step or range of steps."""
         step, place, sound = self._broken.tolist()
         if step == 0 or self._is_told:
             return
@@ -383,12 +383,12 @@ class Simulation:
 
     @property
     def _has_loads(self) -> bool:
-        """Whether any load from outside is set."""
+        """Whether any external load is set."""
         arrays = (self.control.force, self.control.torque, self.state.body_force, self.state.body_torque)
         return any(bool(each.any()) for each in arrays)
 
     def clear_loads(self) -> None:
-        """Forget the loads from outside."""
+        """Clear the external loads."""
         for each in (self.control.force, self.control.torque, self.state.body_force, self.state.body_torque):
             each[:] = 0.0
 
@@ -399,7 +399,7 @@ class Simulation:
                 raise error
 
     def require_time_step(self, dt: float) -> None:
-        """Raise ValueError unless a time step is a positive number; warn of one that is too large, once."""
+        """Raise ValueError unless a time step is a positive number; warn once if it is too large."""
         if not (math.isfinite(dt) and dt > 0.0):
             raise ValueError(f"the time step must be a positive number, not {dt}")
         if not self._is_judged:
@@ -407,14 +407,14 @@ class Simulation:
             self._warn_of(dt)
 
     def limit(self) -> Limit:
-        """Return the largest stable time step, and what it is that limits it."""
+        """Return the largest stable time step and what limits it."""
         rods, bodies = ([self._name(system) for system in systems] for systems in (self.rods, self.bodies))
         found = limits(self.model, self.scene, rods, bodies)
         found += [Limit(stable_time_step(rod), f"{name} at rest") for rod, name in zip(self.rods, rods, strict=True)]
         return min(found, default=Limit(math.inf, "nothing"))
 
     def _warn_of(self, dt: float) -> None:
-        """Warn of a time step that is too large for what is declared, once."""
+        """Warn once if a time step is too large for the declared features."""
         bound, culprit = self.limit()
         if dt > bound and not self._has_warned:
             self._has_warned = True
@@ -426,7 +426,7 @@ class Simulation:
 
 
 def is_lowered(kind: str, declaration: Declaration) -> bool:
-    """Return whether a feature of a kind is part of the compiled step, rather than called by it."""
+    """Return whether a feature is part of the compiled step rather than called by it."""
     return declaration.cls is not None and is_built_in(declaration.cls, CALLED[kind])
 
 
@@ -434,10 +434,10 @@ def lower_joint(joint: Any, one: Any, first: Any, two: Any, second: Any, builder
     """Write the rows of a joint, one for each pair of indices."""
     if np.size(first) != np.size(second):
         raise ValueError(
-            f"first_connect_idx and second_connect_idx of {type(joint).__name__} must be as many, "
+            f"first_connect_idx and second_connect_idx of {type(joint).__name__} must have equal length, "
             f"not {np.size(first)} and {np.size(second)}"
         )
-    # contact as a joint, as in 0.2.x, has no indices
+    # contact declared as a joint, as in 0.2.x, has no indices
     for i, j in zip(np.ravel(first), np.ravel(second), strict=True) if np.size(first) else ((0, 0),):
         joint.lower(builder, (one, int(i), two, int(j)))
 
@@ -451,12 +451,12 @@ def _lower_contact(contact: Any, one: Any, two: Any, builder: SceneBuilder) -> N
 
 
 def _laid(rod: CosseratRod) -> Lowered:
-    """Return a rod as the slots hold it."""
+    """Return a rod in the layout of the slots."""
     return rod._lowered().closed() if rod.ring_rod_flag else rod._lowered()
 
 
 def _make_constraint(declaration: Declaration, system: Any) -> Any:
-    """Make a constraint from what is at its indices now, its own arguments, and the system."""
+    """Make a constraint from the current values at its indices, its own arguments and the system."""
     kwargs = dict(declaration.kwargs)
     indices = {name: kwargs.pop(name, ()) for name in ("constrained_position_idx", "constrained_director_idx")}
     positions, directors = (as_indices(name, index) for name, index in indices.items())
@@ -482,7 +482,7 @@ def _make_constraint(declaration: Declaration, system: Any) -> Any:
 
 
 def _interval(callback: Any) -> int:
-    """Return how many steps are from one call of a callback to the next."""
+    """Return the number of steps between calls of a callback."""
     for name in INTERVALS:
         value = getattr(callback, name, None)
         if isinstance(value, int | np.integer) and not isinstance(value, bool) and value > 0:
@@ -491,7 +491,7 @@ def _interval(callback: Any) -> int:
 
 
 def _takes_time(function: Callable, n_before: int) -> bool:
-    """Return whether a user's method takes a time after the systems: those of 0.2.x joints did not."""
+    """Return whether a user's method takes a time after the systems; methods of 0.2.x joints did not."""
     import inspect
 
     parameters = inspect.signature(function).parameters.values()

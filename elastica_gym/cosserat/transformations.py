@@ -1,4 +1,4 @@
-"""Rotations and skew matrices with checks of shape."""
+"""Rotations and skew matrices with shape checks."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,10 +18,10 @@ def format_vector_shape(vector_collection: ArrayLike) -> Array:
 
 
 def format_matrix_shape(matrix_collection: ArrayLike) -> Array:
-    """Return matrices side by side, (3, 3, n), from (9,), (3, 3), (9, n), (n, 9), (3, 3, n) or (n, 3, 3).
+    """Return stacked matrices, (3, 3, n), from (9,), (3, 3), (9, n), (n, 9), (3, 3, n) or (n, 3, 3).
 
-    Where both ways of reading a shape are open, the first of these is taken. The axes of (n, 3, 3) are
-    reversed, so that each matrix is transposed, as in PyElastica.
+    An ambiguous shape is read as the first of these that fits. The axes of (n, 3, 3) are reversed, so each
+    matrix is transposed, as in PyElastica.
     """
     matrices = np.asarray(matrix_collection, dtype=np.float64)
     shape = matrices.shape
@@ -61,9 +61,9 @@ def rotate(matrix: ArrayLike, scale: float | Array, axis: ArrayLike) -> Array:
     Parameters
     ----------
     matrix : array_like
-        One frame, (9,) or (3, 3), or many, (3, 3, n), or what `format_matrix_shape` brings to that.
+        One frame, (9,) or (3, 3), or many, (3, 3, n) or another shape of `format_matrix_shape`.
     scale : float or Array
-        One for all or one each, (n,) [rad].
+        One for all, or one each, (n,) [rad].
     axis : array_like
         One for all, (3,), or one each, (3, n).
     """

@@ -1,4 +1,4 @@
-"""Small things that scripts import from here."""
+"""Small functions that scripts import from PyElastica's `utils`."""
 
 from collections.abc import Iterable, Iterator
 from itertools import islice
@@ -27,7 +27,7 @@ class MaxDimension:
 
 
 class Tolerance:
-    """Below which differences do not count."""
+    """Tolerances below which differences are ignored."""
 
     @staticmethod
     def atol() -> float:
@@ -44,7 +44,7 @@ def perm_parity(lst: list[int]) -> int:
     """Return 1 if a permutation of 0, 1, ... is even, -1 if it is odd, and sort it in place."""
     parity = 1
     for place in range(len(lst)):
-        # each swap puts a number where it belongs
+        # each swap puts one number in its place
         while (number := lst[place]) != place:
             lst[place], lst[number] = lst[number], number
             parity = -parity
@@ -52,14 +52,14 @@ def perm_parity(lst: list[int]) -> int:
 
 
 def grouper(iterable: Iterable[T], n: int) -> Iterator[tuple[T, ...]]:
-    """Yield what an iterable gives in tuples of n; the last may be shorter."""
+    """Yield the elements of an iterable in tuples of n; the last may be shorter."""
     rest = iter(iterable)
     while group := tuple(islice(rest, n)):
         yield group
 
 
 def extend_instance(obj: Any, cls: type) -> None:
-    """Derive the class of one object from ``cls`` too, whose methods come first."""
+    """Add ``cls`` as the first base class of one object."""
     kind = type(obj)
     obj.__class__ = type(kind.__name__, (cls, kind), {})
 
@@ -70,7 +70,7 @@ def _bspline(t_coeff: Array, l_centerline: float = 1.0) -> "tuple[BSpline, Array
     Parameters
     ----------
     t_coeff : Array
-        Control coefficients; the first and the last are those at the ends, (n,) with n at least 4.
+        Control coefficients, the first and last at the ends, (n,) with n at least 4.
     l_centerline : float
         Length of the rod [m].
     """
@@ -80,8 +80,8 @@ def _bspline(t_coeff: Array, l_centerline: float = 1.0) -> "tuple[BSpline, Array
 def __bspline_impl__(  # noqa: N807
     x_pts: Array, t_c: Array, degree: int
 ) -> "tuple[BSpline, Array, Array]":
-    """Return a spline with knots at given points, the outer ones repeated, and the points and coefficients."""
-    # imported here: it takes longer than all else in this module
+    """Return a spline with given knots, the outer ones repeated, and the knots and coefficients."""
+    # imported here: this import is slow
     from scipy.interpolate import BSpline
 
     knots = np.concatenate([np.full(degree, x_pts[0]), x_pts, np.full(degree, x_pts[-1])])

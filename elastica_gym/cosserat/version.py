@@ -1,4 +1,4 @@
-"""The version of this library, by its name in PyElastica."""
+"""The version of this library, under its name in PyElastica."""
 
 from importlib.metadata import PackageNotFoundError, version
 

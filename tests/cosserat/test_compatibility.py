@@ -191,7 +191,7 @@ def test_nothing_was_saved_before_the_first_file(tmp_path):
 
 @pytest.mark.parametrize("direction", [Z, X + Y, np.array([1e-3, -2.0, 0.4])])
 def test_a_normal_along_the_axis_of_a_cylinder_is_replaced(direction):
-    with pytest.warns(UserWarning, match="the cosine between them is -1: another perpendicular is taken"):
+    with pytest.warns(UserWarning, match="the cosine between them is -1: another perpendicular is used"):
         cylinder = ours.Cylinder(np.zeros(3), direction, -direction, 0.3, 0.01, 1000.0)
     Q = cylinder.director_collection[..., 0]
     assert np.allclose(Q @ Q.T, np.eye(3), atol=1e-14) and np.linalg.det(Q) == pytest.approx(1.0)
@@ -199,7 +199,7 @@ def test_a_normal_along_the_axis_of_a_cylinder_is_replaced(direction):
 
 
 def test_a_slanted_normal_of_a_cylinder_is_straightened():
-    with pytest.warns(UserWarning, match="its perpendicular part is taken"):
+    with pytest.warns(UserWarning, match="its perpendicular part is used"):
         cylinder = ours.Cylinder(np.zeros(3), Z, X + Z, 0.3, 0.01, 1000.0)
     assert np.allclose(cylinder.director_collection[..., 0], [X, Y, Z], atol=1e-14)
 
@@ -216,7 +216,7 @@ def test_rods_ignore_unknown_keywords_as_theirs_but_say_so():
     make_rod(theirs, shear_moduli=4e4)
     with pytest.warns(UserWarning, match=r"straight_rod ignores the unknown keyword shear_moduli; did you mean shear_"):
         make_rod(ours, shear_moduli=4e4)
-    with pytest.warns(UserWarning, match=r"ring_rod ignores the unknown keyword colour; it knows n_elements, ring_"):
+    with pytest.warns(UserWarning, match=r"ring_rod ignores the unknown keyword colour; known keywords: n_elements, ring_"):
         ours.CosseratRod.ring_rod(8, np.ones(3), Z, Y, colour="red", **ROD)
 
 

@@ -1,1 +1,1 @@
-"""What PyElastica calls experimental, by its paths: joints that its published examples use."""
+"""Experimental joints used by PyElastica's published examples, under their paths there."""

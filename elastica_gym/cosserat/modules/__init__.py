@@ -1,4 +1,4 @@
-"""What a simulator is made of: a class that inherits `BaseSystemCollection` and the features it uses."""
+"""Parts of a simulator: its class inherits `BaseSystemCollection` and the features it uses."""
 
 from .base_system import BaseSystemCollection
 from .callbacks import CallBacks

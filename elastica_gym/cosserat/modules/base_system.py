@@ -24,29 +24,29 @@ FEATURES = {
     "collect_diagnostics": "CallBacks",
     "detect_contact_between": "Contact",
 }
-"""Which class a simulator must be derived from to have a method"""
+"""Base class that provides each method of a simulator"""
 
 
 @refuse_methods
 class BaseSystemCollection(MutableSequence):
-    """A list of rods, rigid bodies and surfaces; derive your simulator from it and the features you use.
+    """A list of rods, rigid bodies and surfaces; derive your simulator from it and from the features you use.
 
     Attributes
     ----------
     allowed_sys_types : tuple of type
-        What may be appended.
+        Types that may be appended.
     """
 
     def __init__(self) -> None:
         self.allowed_sys_types: tuple[type, ...] = (CosseratRod, RigidBodyBase, SurfaceBase)
         self._systems: list[Any] = []
-        # by the identity of each system: a search through them would make many rods slow to declare
+        # by identity: a linear search would make declaring many rods slow
         self._places: dict[int, int] = {}
         self._declared: dict[str, list[Declaration]] = {}
         self._simulation: Simulation | Ensemble | None = None
         super().__init__()
 
-    # a list
+    # list interface
 
     def __len__(self) -> int:
         return len(self._systems)
@@ -75,7 +75,7 @@ class BaseSystemCollection(MutableSequence):
         TypeError
             If it is not a rod, a rigid body or a surface.
         ValueError
-            If it is already there.
+            If it is already in the simulator.
         """
         self._require_open("add a system")
         self._require_allowed(system)
@@ -95,18 +95,18 @@ class BaseSystemCollection(MutableSequence):
         return str(self._systems)
 
     def extend_allowed_types(self, additional_types: tuple[type, ...]) -> None:
-        """Allow more types of systems; those that the step does not know are not moved by it."""
+        """Allow more types of systems; the step does not move types unknown to it."""
         self.allowed_sys_types += tuple(additional_types)
 
     def append_allowed_types(self, additional_types: type) -> None:
-        """Allow one more type of systems."""
+        """Allow one more type of system."""
         self.extend_allowed_types((additional_types,))
 
     def override_allowed_types(self, allowed_types: tuple[type, ...]) -> None:
-        """Allow these types of systems and no others."""
+        """Allow only these types of systems."""
         self.allowed_sys_types = tuple(allowed_types)
 
-    # by its name in 1.0
+    # name in 1.0
     _override_allowed_types = override_allowed_types
 
     def systems(self) -> Iterator[Any]:
@@ -118,7 +118,7 @@ class BaseSystemCollection(MutableSequence):
         return (system for system in self._systems if isinstance(system, CosseratRod | RigidBodyBase))
 
     def get_system_index(self, system: Any) -> int:
-        """Return where a system is, or the index that was given.
+        """Return the index of a system; an index is returned as it is.
 
         Raises
         ------
@@ -138,13 +138,13 @@ class BaseSystemCollection(MutableSequence):
     # features
 
     def __getattr__(self, name: str) -> Any:
-        # reached only for what no base class has: say which of them is missing
+        # reached only if no base class has the attribute: name the missing one
         if name in FEATURES:
             raise AttributeError(f"to call {name}, derive {type(self).__name__} from {FEATURES[name]} too")
         raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
 
     def _declare(self, feature: str, what: str, base: type, *systems: Any) -> Declaration:
-        """Note a feature of systems, to be made at ``finalize``."""
+        """Register a feature of systems, to be made at ``finalize``."""
         self._require_open(f"add a {what}")
         found = tuple(self._systems[self.get_system_index(system)] for system in systems)
         declaration = Declaration(what, base, *found)
@@ -152,14 +152,14 @@ class BaseSystemCollection(MutableSequence):
         return declaration
 
     def finalize(self) -> None:
-        """Make all features and lower them to tables. After this, nothing can be added.
+        """Make all features and lower them to tables; nothing can be added afterwards.
 
         Constraints are applied at time 0, and callbacks are called once, with time 0 and step 0.
 
         Raises
         ------
         RuntimeError
-            If it was called before, if there is no rod, or if a feature was declared without a class.
+            If called twice, if there is no rod or rigid body, or if a feature was declared without a class.
         """
         from ..ensemble import simulate_systems
 
@@ -183,7 +183,7 @@ class BaseSystemCollection(MutableSequence):
         return self._simulation
 
     def stable_time_step(self) -> float:
-        """Return the largest time step of position Verlet that all rods and all that is declared allow [s].
+        """Return the largest stable time step of position Verlet for all rods and declared features [s].
 
         Raises
         ------
@@ -205,7 +205,7 @@ class BaseSystemCollection(MutableSequence):
         self.simulation.callbacks.call(time, current_step)
 
     def close(self) -> None:
-        """Tell callbacks that the simulation is over; before ``finalize`` there are none."""
+        """Close all callbacks; before ``finalize`` there are none."""
         if self._simulation is not None:
             self._simulation.callbacks.close()
 

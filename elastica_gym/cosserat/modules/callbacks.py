@@ -1,4 +1,4 @@
-"""Callbacks, as a part of simulators."""
+"""Callbacks of simulators."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -14,15 +14,15 @@ else:
 
 
 class CallBacks(_Collection):
-    """Lets a simulator be looked at while it runs."""
+    """Adds callbacks to a simulator."""
 
     def collect_diagnostics(self, system: Any) -> Declaration:
-        """Announce a callback; say which by ``using(cls, *args, **kwargs)``.
+        """Declare a callback; set its class by ``using(cls, *args, **kwargs)``.
 
         Parameters
         ----------
         system
-            A system; or a list, a tuple or a dict of them; or ``...`` for all, as a tuple.
+            A system; a list, tuple or dict of systems; or ``...`` for all, as a tuple.
         """
         if system is Ellipsis:
             system = tuple(self.systems())

@@ -1,4 +1,4 @@
-"""Joints, as a part of simulators."""
+"""Joints of simulators."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -16,21 +16,20 @@ else:
 
 
 class Connections(_Collection):
-    """Lets a simulator connect systems by joints."""
+    """Adds joints to a simulator."""
 
     def connect(
         self, first_rod: Any, second_rod: Any, first_connect_idx: Any = None, second_connect_idx: Any = None
     ) -> Declaration:
-        """Announce a joint between two systems at two indices; say which by ``using(cls, *args, **kwargs)``.
+        """Declare a joint between two systems at two indices; set its class by ``using(cls, *args, **kwargs)``.
 
         Parameters
         ----------
         first_rod, second_rod
             Rods or rigid bodies.
         first_connect_idx, second_connect_idx : int or sequence of int
-            Node and element of each that are connected, counted from the end if negative. Several are
-            passed on as they are to a class of your own, and make as many joints of the built-in ones; none
-            for what connects whole systems.
+            Connected node and element of each, counted from the end if negative. Several indices make as
+            many built-in joints; your own class gets them unchanged. Omit both to connect whole systems.
 
         Raises
         ------

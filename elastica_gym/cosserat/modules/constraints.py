@@ -1,4 +1,4 @@
-"""Constraints, as a part of simulators."""
+"""Constraints of simulators."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +13,10 @@ else:
 
 
 class Constraints(_Collection):
-    """Lets a simulator prescribe motion."""
+    """Adds constraints to a simulator."""
 
     def constrain(self, system: Any) -> Declaration:
-        """Announce a constraint of a system; say which by ``using(cls, *args, constrained_position_idx=..., ...)``."""
+        """Declare a constraint of a system; set it by ``using(cls, *args, constrained_position_idx=..., ...)``."""
         return self._declare("constraints", "constraint", ConstraintBase, system)
 
 

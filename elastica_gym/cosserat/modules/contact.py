@@ -1,4 +1,4 @@
-"""Contact, as a part of simulators."""
+"""Contact of simulators."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +13,10 @@ else:
 
 
 class Contact(_Collection):
-    """Lets systems of a simulator touch."""
+    """Adds contact to a simulator."""
 
     def detect_contact_between(self, first_system: Any, second_system: Any) -> Declaration:
-        """Announce that two systems may touch, or one itself; say how by ``using(cls, *args, **kwargs)``."""
+        """Declare contact of two systems, or of one with itself; set its class by ``using(cls, *args, **kwargs)``."""
         return self._declare("contacts", "contact", NoContact, first_system, second_system)
 
 

@@ -1,4 +1,4 @@
-"""Dampers, as a part of simulators."""
+"""Dampers of simulators."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +13,10 @@ else:
 
 
 class Damping(_Collection):
-    """Lets a simulator damp systems."""
+    """Adds dampers to a simulator."""
 
     def dampen(self, system: Any) -> Declaration:
-        """Announce a damper of a system; say which by ``using(cls, *args, **kwargs)``."""
+        """Declare a damper of a system; set its class by ``using(cls, *args, **kwargs)``."""
         return self._declare("damping", "damper", DamperBase, system)
 
 

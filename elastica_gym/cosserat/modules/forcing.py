@@ -1,4 +1,4 @@
-"""Loads, as a part of simulators."""
+"""Loads of simulators."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +13,10 @@ else:
 
 
 class Forcing(_Collection):
-    """Lets a simulator load systems from outside."""
+    """Adds external loads to a simulator."""
 
     def add_forcing_to(self, system: Any) -> Declaration:
-        """Announce a load on a system; say which by ``using(cls, *args, **kwargs)``."""
+        """Declare a load on a system; set its class by ``using(cls, *args, **kwargs)``."""
         return self._declare("forcing", "load", NoForces, system)
 
 

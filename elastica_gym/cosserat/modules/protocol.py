@@ -1,4 +1,4 @@
-"""Simulators and declarations by PyElastica's names for annotations."""
+"""Simulators and declarations under PyElastica's names for annotations."""
 
 from ..declaration import Declaration
 from .base_system import BaseSystemCollection

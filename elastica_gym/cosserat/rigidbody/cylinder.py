@@ -13,17 +13,17 @@ from .rigid_body import RigidBodyBase
 
 
 class Cylinder(RigidBodyBase):
-    """A rigid cylinder of even density. To rods it is a capsule, to planes its ends are flat.
+    """A rigid cylinder of uniform density. In contact with rods it is a capsule; with planes its ends are flat.
 
     Parameters
     ----------
     start : array_like
         Centre of its first end [m], (3,).
     direction : array_like
-        From its first end to its second, d3; of any length, (3,).
+        From its first end to its second, d3, of any length, (3,).
     normal : array_like
-        Towards d1; of any length, (3,). Of one that is not perpendicular to ``direction`` the perpendicular
-        part is taken, and for one along it any perpendicular, with a warning.
+        Along d1, of any length, (3,). If it is not perpendicular to ``direction``, its perpendicular part
+        is used, or any perpendicular if it is parallel, with a warning.
     base_length, base_radius : float
         [m]
     density : float
@@ -53,7 +53,7 @@ class Cylinder(RigidBodyBase):
 
 
 def _perpendicular(normal: Array, axis: Array) -> Array:
-    """Return the unit vector across an axis that is nearest to a normal, and warn unless it is the normal."""
+    """Return the unit vector perpendicular to an axis and nearest to a normal; warn if they differ."""
     cosine = float(normal @ axis)
     if abs(cosine) <= TOLERANCE:
         return normal
@@ -61,7 +61,7 @@ def _perpendicular(normal: Array, axis: Array) -> Array:
     is_parallel = float(np.linalg.norm(across)) <= TOLERANCE
     if is_parallel:
         across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    taken = "another perpendicular is taken" if is_parallel else "its perpendicular part is taken"
+    taken = "another perpendicular is used" if is_parallel else "its perpendicular part is used"
     warnings.warn(
         f"normal is not perpendicular to direction, the cosine between them is {cosine:.3g}: {taken}",
         UserWarning,

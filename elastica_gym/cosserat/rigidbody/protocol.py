@@ -1,4 +1,4 @@
-"""Rigid bodies by their name for annotations in 0.3."""
+"""Rigid bodies under their name for annotations in 0.3."""
 
 from .rigid_body import RigidBodyBase
 

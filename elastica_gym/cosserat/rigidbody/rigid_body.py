@@ -1,4 +1,4 @@
-"""What all rigid bodies have in common."""
+"""Base class of rigid bodies."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -14,9 +14,9 @@ NOWHERE = Contact(stiffness=1.0)
 
 @dataclass(frozen=True)
 class LoweredBody:
-    """A rigid body under the names of `surroundings.Cylinder`; a sphere is a cylinder without length.
+    """A rigid body under the names of `surroundings.Cylinder`; a sphere is a cylinder of zero length.
 
-    How it is touched is said pair by pair, so what the environments say body by body is left out.
+    Contact is declared per pair here, so the per-body contact parameters of environments are left out.
     """
 
     length: float
@@ -45,15 +45,15 @@ class RigidBodyBase:
     omega_collection : Array
         Angular velocity [rad/s], material frame, (3, 1).
     external_forces, external_torques : Array
-        Loads on the centre [N], lab frame, and about it [N m], material frame, (3, 1).
+        Forces on the centre [N], lab frame, and torques about it [N m], material frame, (3, 1).
     mass_second_moment_of_inertia : Array
         [kg m^2], diagonal, (3, 3, 1).
     inv_mass_second_moment_of_inertia : Array
         Its inverse, (3, 3, 1), computed when read.
     acceleration_collection, alpha_collection : Array
-        Accelerations by the loads of the last kick [m/s^2], [rad/s^2], (3, 1), computed when read.
+        Accelerations from the loads of the last kick [m/s^2], [rad/s^2], (3, 1), computed when read.
     mass, volume, density : np.float64 or Array
-        [kg], [m^3], [kg/m^3]; from ``finalize`` on arrays of shape (1,), which cannot be written.
+        [kg], [m^3], [kg/m^3]; from ``finalize`` on, read-only arrays of shape (1,).
     length, radius : np.float64
         [m]
     """
@@ -62,7 +62,7 @@ class RigidBodyBase:
     n_elems = n_nodes = 1
     ring_rod_flag = False
     _time_step = 0.0
-    """Of the run that it is in, which friction on planes needs when it is called by hand [s]"""
+    """Time step of the run, needed by friction on planes called by hand [s]"""
 
     position_collection = Field()
     velocity_collection = Field()
@@ -83,7 +83,7 @@ class RigidBodyBase:
             name: np.zeros((3, 1))
             for name in ("velocity_collection", "omega_collection", "external_forces", "external_torques")
         }
-        # where the search for friction with planes starts; a saved state has it too
+        # warm start of friction with planes; part of a saved state
         self._fields["plane_contact"] = np.zeros((6, 7))
         self._fields["position_collection"] = np.array(position, dtype=np.float64).reshape(3, 1)
         self._fields["director_collection"] = directors.reshape(3, 3, 1)
@@ -117,7 +117,7 @@ class RigidBodyBase:
         return 0.5 * (w @ self.mass_second_moment_of_inertia[..., 0] @ w)
 
     def compute_internal_forces_and_torques(self, time: float) -> None:
-        """Do nothing: a rigid body has none."""
+        """Do nothing: a rigid body has no internal loads."""
 
     def update_accelerations(self, time: float, dt: float) -> None:
         """Do nothing: the accelerations are computed from the loads when read."""
@@ -128,7 +128,7 @@ class RigidBodyBase:
         self.external_torques[:] = 0.0
 
     def _lowered(self) -> LoweredBody:
-        """Return what a Model needs to know.
+        """Return the attributes that a Model needs.
 
         Raises
         ------
@@ -149,11 +149,11 @@ class RigidBodyBase:
 
     @property
     def _axis_length(self) -> float:
-        """From end to end, without domes."""
+        """Length from end to end, without caps."""
         return self.length
 
     def _move(self, memory: dict[str, Array]) -> None:
-        """Copy fields to other memory and use that from now on."""
+        """Copy fields to other memory and use it from now on."""
         for name, target in memory.items():
             target[...] = self._fields[name]
         self._fields = {**self._fields, **memory}
@@ -162,7 +162,7 @@ class RigidBodyBase:
 
 
 def _constant(value: Any) -> Array:
-    """Return a number as an array of shape (1,) that cannot be written."""
+    """Return a number as a read-only array of shape (1,)."""
     array = np.array(value, dtype=np.float64).reshape(1)
     array.flags.writeable = False
     return array

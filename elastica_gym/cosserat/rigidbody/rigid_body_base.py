@@ -1,4 +1,4 @@
-"""`rigid_body` by its name in 1.0."""
+"""`rigid_body` under its name in 1.0."""
 
 from .rigid_body import RigidBodyBase
 

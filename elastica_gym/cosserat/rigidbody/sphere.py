@@ -9,7 +9,7 @@ from .rigid_body import RigidBodyBase
 
 
 class Sphere(RigidBodyBase):
-    """A rigid sphere of even density.
+    """A rigid sphere of uniform density.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Rods: as the environments describe them, and as the documented library does."""
+"""Rods: descriptions used by environments, and the library's `CosseratRod`."""
 
 from ...engine.rod import (
     Continuum,

@@ -1,4 +1,4 @@
-"""The documented rod: a Cosserat rod with its attributes as arrays, in PyElastica's names."""
+"""A Cosserat rod with its attributes as arrays, under PyElastica's names."""
 
 import inspect
 from collections.abc import Callable
@@ -45,14 +45,14 @@ MATERIAL = (
     "dissipation_constant_for_forces",
     "dissipation_constant_for_torques",
 )
-"""Attributes that a simulation reads when it is entered, kept in one piece of memory."""
+"""Attributes that a simulation reads when it is entered, stored contiguously."""
 
 TOLERANCE = 1e-8
-"""How far given positions, by the size of the rod, and directors may be from what they should be"""
+"""Tolerance of given positions, relative to the size of the rod, and of directors"""
 
 
 class Field:
-    """An array attribute that keeps its memory: assigning copies, after a check of the shape."""
+    """An array attribute that keeps its memory: assignment checks the shape and copies."""
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
@@ -69,7 +69,7 @@ class Field:
 
 @dataclass(frozen=True)
 class Lowered:
-    """A rod's attributes under the names of `Continuum`, the matrices reduced to their diagonals."""
+    """A rod's attributes under the names of `Continuum`, matrices reduced to their diagonals."""
 
     n_elements: int
     position: Array
@@ -90,10 +90,10 @@ class Lowered:
     damping_rate: float = 0.0
 
     def closed(self) -> "Lowered":
-        """Return an open rod that a ring can be computed as, with its first element again at the end.
+        """Return an equivalent open rod of a ring, with its first element repeated at the end.
 
-        That *image* has no stiffness, inertia or mass, so it moves nothing and does not move; what it is
-        pushed with belongs to the first element.
+        That *image* has no stiffness, inertia or mass, so it has no effect and does not move; loads on it
+        belong to the first element.
         """
 
         def again(values: Array, n: int = 1) -> Array:
@@ -122,7 +122,7 @@ class Lowered:
         )
 
     def opened(self) -> "Lowered":
-        """Return a ring cut open, as `stable_time_step` can judge it."""
+        """Return a ring cut open, for `stable_time_step`."""
         return replace(
             self, bend_stiffness=self.bend_stiffness[:, :-1], nodal_mass=np.append(self.nodal_mass, self.nodal_mass[0])
         )
@@ -131,14 +131,14 @@ class Lowered:
 class CosseratRod(RodBase):
     """A Cosserat rod of n elements; make one with `straight_rod` or `ring_rod`.
 
-    The arrays below can be read, changed in place and assigned at any time. From `finalize` on, those
-    of motion and rest strain are views of the simulation's own memory; those of material are read by
-    it whenever compiled code is entered, which is at the start of `integrate` and after callbacks.
+    The arrays below can be read, changed in place and assigned at any time. From `finalize` on, arrays
+    of motion and rest strain are views of the simulation's memory; arrays of material are read
+    whenever compiled code is entered: at the start of `integrate` and after callbacks.
 
     Attributes
     ----------
     n_elems, n_nodes : int
-        Number of elements n, and of nodes: n + 1, on a ring n.
+        Number of elements, n, and of nodes, n + 1 (n on a ring).
     position_collection, velocity_collection : Array
         Of nodes [m], [m/s], lab frame, (3, n + 1).
     director_collection : Array
@@ -150,10 +150,10 @@ class CosseratRod(RodBase):
     rest_kappa : Array
         Curvature and twist at rest [1/m], (3, n - 1); on a ring (3, n).
     external_forces, external_torques : Array
-        Loads from outside, on nodes [N], lab frame, (3, n + 1), and on elements [N m], material frame,
-        (3, n). What is added between steps acts in the next one; they are cleared after each.
+        External loads on nodes [N], lab frame, (3, n + 1), and on elements [N m], material frame, (3, n).
+        Loads added between steps act in the next step; they are cleared after each.
     rest_lengths, rest_voronoi_lengths : Array
-        Lengths at rest, of elements (n,) and between their centres (n - 1,) [m].
+        Rest lengths of elements, (n,), and between their centres, (n - 1,) [m].
     density, volume : Array
         Of elements [kg/m^3], [m^3], (n,).
     mass : Array
@@ -161,16 +161,16 @@ class CosseratRod(RodBase):
     mass_second_moment_of_inertia, inv_mass_second_moment_of_inertia : Array
         Of elements [kg m^2] and its inverse, diagonal, (3, 3, n).
     shear_matrix, bend_matrix : Array
-        Stiffness of shear and stretch [N], (3, 3, n), and of bending and twist [N m^2], (3, 3, n - 1).
-        Diagonal.
+        Stiffness of shear and stretch [N], (3, 3, n), and of bending and twist [N m^2], (3, 3, n - 1);
+        diagonal.
     dissipation_constant_for_forces, dissipation_constant_for_torques : Array
-        The documented ``nu`` of 0.2.x, (n,) [kg/(m s)], [kg m/s].
+        Damping ``nu`` of 0.2.x, (n,) [kg/(m s)], [kg m/s].
     lengths, tangents, radius, dilatation, dilatation_rate, voronoi_dilatation, sigma, kappa, internal_stress,
     internal_couple, internal_forces, internal_torques, damping_forces, damping_torques : Array
-        What follows from the others, computed when read. What is written to them is lost, as it is in PyElastica
+        Derived from the other attributes, computed when read. Values written to them are lost, as in PyElastica
         at the next step.
     acceleration_collection, alpha_collection : Array
-        Accelerations in the last kick [m/s^2], [rad/s^2], computed when read.
+        Accelerations of the last kick [m/s^2], [rad/s^2], computed when read.
     """
 
     REQUISITE_MODULES: ClassVar[list[type]] = []
@@ -271,7 +271,7 @@ class CosseratRod(RodBase):
     ) -> Self:
         """Return a straight rod of equal elements, or one through given nodes.
 
-        As in PyElastica, unknown keywords are ignored, but with a warning.
+        Unknown keywords are ignored as in PyElastica, but with a warning.
 
         Parameters
         ----------
@@ -280,28 +280,28 @@ class CosseratRod(RodBase):
         start : array_like
             First node [m], (3,).
         direction, normal : array_like
-            Along the rod, and d1 perpendicular to it; of any length, (3,).
+            Along the rod, and d1 perpendicular to it, of any length, (3,).
         base_length : float
             [m]
         base_radius, density : float or array_like
-            [m], [kg/m^3]; one for all elements or one each, (n,).
+            [m], [kg/m^3]; one for all elements, or one each, (n,).
         nu, nu_for_torques : float
             Damping of 0.2.x: force per velocity and length [kg/(m s)], torque per angular velocity and
-            length [kg m/s]; the second is the first unless given. 1.0 has dampers instead.
+            length [kg m/s], default ``nu``. 1.0 has dampers instead.
         youngs_modulus, shear_modulus : float
-            Y and G [Pa]. Without G, it follows from ``poisson_ratio`` by the rule of 0.2.x, Y/(1 + ratio),
-            with a ratio of 1/2 if ``nu`` is given; with neither it is that of 1.0, Y/3.
+            Y and G [Pa]. If omitted, G follows from ``poisson_ratio`` by the rule of 0.2.x, Y/(1 + ratio),
+            with a ratio of 1/2 if ``nu`` is given; with neither, G is Y/3 as in 1.0.
         alpha_c : float
             Shear correction: the shear stiffness is alpha_c G A. An argument of 0.1.x and 0.2.x.
         position, directors : array_like
-            Nodes [m], (3, n + 1), and directors, (3, 3, n), instead of straight ones.
+            Nodes [m], (3, n + 1), and directors, (3, 3, n), instead of a straight rod's.
         rest_sigma, rest_kappa : array_like
-            Strains at rest, (3, n), and curvatures at rest [1/m], (3, n - 1); zero unless given.
+            Strains at rest, (3, n), and curvatures at rest [1/m], (3, n - 1); default zero.
 
         Raises
         ------
         ValueError, TypeError
-            If an argument cannot be: names it, its value and what is allowed.
+            If an argument is invalid; the message names it, its value and the allowed ones.
         """
         warn_of_unknown("straight_rod", unknown, _keywords(cls.straight_rod))
         n_elements = as_count("n_elements", n_elements, 2)
@@ -354,12 +354,12 @@ class CosseratRod(RodBase):
         rest_kappa: ArrayLike | None = None,
         **unknown: Any,
     ) -> Self:
-        """Return a closed rod in the plane across ``normal``: a circle, or through given nodes.
+        """Return a closed rod: a circle in the plane across ``normal``, or through given nodes.
 
-        A ring of n elements has as many nodes and Voronoi points, so ``position`` and ``rest_kappa``
-        are (3, n). The first node lies along direction x normal from the centre, and the ring runs
-        towards ``direction`` from there. A ``rest_kappa`` or ``rest_sigma`` that is zero throughout at
-        ``finalize`` becomes that of the ring as it is then. The other parameters are those of `straight_rod`.
+        A ring of n elements has n nodes and n Voronoi points, so ``position`` and ``rest_kappa`` are
+        (3, n). The first node lies along direction x normal from the centre, and the ring starts
+        towards ``direction``. If ``rest_kappa`` or ``rest_sigma`` is zero throughout at ``finalize``,
+        it is set to the ring's current strain. The other parameters are those of `straight_rod`.
         """
         warn_of_unknown("ring_rod", unknown, _keywords(cls.ring_rod))
         n_elements = as_count("n_elements", n_elements, 3)
@@ -407,7 +407,7 @@ class CosseratRod(RodBase):
         rest_sigma: ArrayLike | None,
         rest_kappa: ArrayLike | None,
     ) -> Self:
-        """Check what both constructors take, and make the rod."""
+        """Check the arguments common to both constructors, and make the rod."""
         if youngs_modulus is None:
             raise TypeError("youngs_modulus is missing; give it in Pa")
         require_positive("youngs_modulus", youngs_modulus)
@@ -435,11 +435,11 @@ class CosseratRod(RodBase):
             rest_kappa=np.zeros((3, joints)) if rest_kappa is None else _array("rest_kappa", rest_kappa, (3, joints)),
         )
 
-    # what follows from the arrays
+    # derived arrays
 
     @property
     def _edges(self) -> Array:
-        """From node to node [m], (3, n)."""
+        """Vectors from node to node [m], (3, n)."""
         return _edges(self.position_collection, self.ring_rod_flag)
 
     @property
@@ -528,47 +528,47 @@ class CosseratRod(RodBase):
 
     @property
     def ghost_elems_idx(self) -> NDArray[np.int32]:
-        """Gaps between rods in a block of memory, of which one rod has none, (0,)."""
+        """Gaps between rods in a memory block; empty for a single rod, (0,)."""
         return np.zeros(0, dtype=np.int32)
 
     ghost_voronoi_idx = ghost_elems_idx
 
-    # what steps taken by hand call
+    # called by hand-written steps
 
     def compute_internal_forces_and_torques(self, time: float) -> None:
         """Do nothing: internal forces and torques are computed when read."""
 
     def update_accelerations(self, time: float, dt: float) -> None:
-        """Set the accelerations to those of internal loads, of the damping ``nu`` and of loads from outside."""
+        """Set the accelerations from internal loads, the damping ``nu`` and external loads."""
         forces, torques = self._fields["net_forces"], self._fields["net_torques"]
         forces[:] = self.internal_forces - self.damping_forces + self.external_forces
         torques[:] = self.internal_torques - self.damping_torques + self.external_torques
 
     def zeroed_out_external_forces_and_torques(self, time: float) -> None:
-        """Clear the loads from outside."""
+        """Clear the external loads."""
         self.external_forces[:] = 0.0
         self.external_torques[:] = 0.0
 
-    # between the rod and its simulation
+    # interface to the simulation
 
     def _rest_as_built(self) -> None:
-        """Let a ring without any strain at rest be at rest as it is: no ring is at rest without curvature."""
+        """Set zero rest strains of a ring to its current ones: a ring at rest has curvature."""
         if self.ring_rod_flag and not self.rest_sigma.any():
             self.rest_sigma[:] = self.sigma
         if self.ring_rod_flag and not self.rest_kappa.any():
             self.rest_kappa[:] = self.kappa
 
     def as_continuum(self) -> Lowered:
-        """Return the rod as the physics knows it, a ring cut open."""
+        """Return the rod as a `Continuum`, a ring cut open."""
         return self._lowered().opened() if self.ring_rod_flag else self._lowered()
 
     def _lowered(self) -> Lowered:
-        """Return what a Model needs to know.
+        """Return the attributes that a Model needs.
 
         Raises
         ------
         ValueError
-            If a matrix is not diagonal, or what must be positive is not.
+            If a matrix is not diagonal, or a value that must be positive is not.
         """
         for name in ("rest_lengths", "rest_voronoi_lengths", "volume", "mass"):
             require_positive(f"smallest of {name}", float(getattr(self, name).min()))
@@ -592,7 +592,7 @@ class CosseratRod(RodBase):
         )
 
     def _move(self, memory: dict[str, Array]) -> None:
-        """Copy fields to other memory and use that from now on."""
+        """Copy fields to other memory and use it from now on."""
         for name, target in memory.items():
             target[...] = self._fields[name]
         self._fields = {**self._fields, **memory}
@@ -619,7 +619,7 @@ def _diagonal(rows: Array) -> Array:
 def _diagonal_of(name: str, matrices: Array) -> Array:
     rows = np.einsum("iik->ik", matrices)
     if np.count_nonzero(matrices) > np.count_nonzero(rows):
-        raise ValueError(f"{name} must be diagonal for each element; entries off the diagonal are not supported")
+        raise ValueError(f"{name} must be diagonal for each element; off-diagonal entries are not supported")
     return rows
 
 
@@ -636,7 +636,7 @@ def _shear_modulus(Y: float, G: float | None, poisson_ratio: float | None, nu: f
 
 
 def _directors(edges: Array, normal: ArrayLike, directors: ArrayLike | None) -> Array:
-    """Return given directors, checked, or those with d3 along the elements and d1 along ``normal``."""
+    """Return given directors after checks, or directors with d3 along the elements and d1 along ``normal``."""
     n = edges.shape[1]
     tangents = edges / np.linalg.norm(edges, axis=0)
     if directors is not None:
@@ -657,7 +657,7 @@ def _directors(edges: Array, normal: ArrayLike, directors: ArrayLike | None) -> 
 def _each(name: str, value: ArrayLike, n: int) -> Array:
     values = as_numbers(name, value)
     if values.shape not in ((), (1,), (n,)):
-        raise ValueError(f"{name} must be one number or {n}, one for each element; its shape is {values.shape}")
+        raise ValueError(f"{name} must be one number or {n}, one per element; its shape is {values.shape}")
     require_positive(f"smallest {name}", float(values.min()))
     return np.broadcast_to(values, (n,)).copy()
 
@@ -667,7 +667,7 @@ def _array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     if array.shape != shape:
         raise ValueError(f"{name} must have shape {shape}, not {array.shape}")
     if not np.isfinite(array).all():
-        raise ValueError(f"{name} must be finite, but has {int((~np.isfinite(array)).sum())} entries that are not")
+        raise ValueError(f"{name} must be finite, but has {int((~np.isfinite(array)).sum())} non-finite entries")
     return array
 
 

@@ -1,4 +1,4 @@
-"""Energies and centres of mass of rods, from their documented attributes."""
+"""Energies and centres of mass of rods, from their public attributes."""
 
 import numpy as np
 

@@ -1,7 +1,7 @@
-"""The stages of a step that PyElastica's rod has as functions of arrays, which write their results in place.
+"""Stages of a step as functions of arrays, as in PyElastica's rod, which write their results in place.
 
-For scripts that import them from `rod.cosserat_rod`; all of open rods, n elements. The step of this library is
-compiled in one piece, and the rod's attributes are computed by `strain`.
+For scripts that import them from `rod.cosserat_rod`; all for open rods of n elements. This library's step is
+compiled as a whole, and the rod's attributes are computed by `strain`.
 """
 
 import numpy as np
@@ -38,7 +38,7 @@ def _compute_all_dilatations(
     rest_voronoi_lengths: Array,
     voronoi_dilatation: Array,
 ) -> None:
-    """Write what `_compute_geometry_from_state` does, and how far elements and Voronoi lengths are stretched."""
+    """Write the results of `_compute_geometry_from_state`, and the dilatations of elements and Voronoi lengths."""
     _compute_geometry_from_state(position_collection, volume, lengths, tangents, radius)
     dilatation[:] = lengths / rest_lengths
     voronoi_dilatation[:] = 0.5 * (lengths[1:] + lengths[:-1]) / rest_voronoi_lengths
@@ -65,7 +65,7 @@ def _compute_shear_stretch_strains(
     director_collection: Array,
     sigma: Array,
 ) -> None:
-    """Write what `_compute_all_dilatations` does, and sigma."""
+    """Write the results of `_compute_all_dilatations`, and sigma."""
     _compute_all_dilatations(
         position_collection,
         volume,
@@ -96,7 +96,7 @@ def _compute_internal_shear_stretch_stresses_from_model(
     shear_matrix: Array,
     internal_stress: Array,
 ) -> None:
-    """Write what `_compute_shear_stretch_strains` does, and the stress S (sigma - sigma^)."""
+    """Write the results of `_compute_shear_stretch_strains`, and the stress S (sigma - sigma^)."""
     _compute_shear_stretch_strains(
         position_collection,
         volume,
@@ -149,7 +149,7 @@ def _compute_internal_forces(
     internal_forces: Array,
     ghost_elems_idx: NDArray[np.int32],
 ) -> None:
-    """Write what `_compute_internal_shear_stretch_stresses_from_model` does, and the forces on nodes [N]."""
+    """Write the results of `_compute_internal_shear_stretch_stresses_from_model`, and the forces on nodes [N]."""
     _compute_internal_shear_stretch_stresses_from_model(
         position_collection,
         volume,

@@ -1,7 +1,7 @@
 """Twist, writhe and link of rods (Klenin and Langowski 2000, methods 2a and 1a).
 
-The area that a pair of segments spans on the sphere of directions is computed from two triangles, by the formula
-of Van Oosterom and Strackee 1983. Unlike a sum of arcsines it is exact for segments on one line or in one plane.
+The area spanned by a pair of segments on the unit sphere is computed from two triangles, by the formula of
+Van Oosterom and Strackee 1983. Unlike a sum of arcsines, it is exact for collinear or coplanar segments.
 """
 
 from typing import Protocol
@@ -16,7 +16,7 @@ SEGMENTS = ("next_tangent", "end_to_end", "net_tangent")
 
 
 class KnotTheoryCompatibleProtocol(Protocol):
-    """What `KnotTheory` needs of a rod: nodes (3, n + 1), directors (3, 3, n), radii (n,), rest lengths (n,)."""
+    """Attributes that `KnotTheory` needs: nodes (3, n + 1), directors (3, 3, n), radii (n,), rest lengths (n,)."""
 
     @property
     def position_collection(self) -> Array: ...  # noqa: D102
@@ -32,12 +32,12 @@ class KnotTheory:
     """Twist, writhe and link as methods.
 
     An open rod is closed at infinity: a segment as long as the rod is added to each of its ends.
-    ``type_of_additional_segment`` says in which direction:
+    ``type_of_additional_segment`` sets its direction:
 
     - ``"next_tangent"``: along the tangents at the ends;
     - ``"end_to_end"``: along the line from the first node to the last;
-    - ``"net_tangent"``: along the line between the mean nodes of the two halves, of which neither has the
-      middle node of an odd number.
+    - ``"net_tangent"``: along the line between the mean nodes of the two halves, without the middle node
+      if the number is odd.
 
     None adds no segments.
     """
@@ -70,7 +70,7 @@ class KnotTheory:
 
 
 def compute_twist(center_line: ArrayLike, normal_collection: ArrayLike) -> tuple[Array, Array]:
-    """Return how often the normals turn around the centre line (Klenin and Langowski 2000, method 2a).
+    """Return the turns of the normals around the centre line (Klenin and Langowski 2000, method 2a).
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def compute_twist(center_line: ArrayLike, normal_collection: ArrayLike) -> tuple
 
 
 def _turned(vectors: Array, before: Array, after: Array) -> Array:
-    """Return vectors turned as little as takes unit tangents ``before`` to ``after``."""
+    """Return vectors turned by the smallest rotation from unit tangents ``before`` to ``after``."""
     axis = np.cross(before, after, axis=1)
     cosine = (before * after).sum(axis=1, keepdims=True)
     # Rodrigues' formula, (1 - c)/s^2 = 1/(1 + c)
@@ -114,7 +114,7 @@ def compute_writhe(
     center_line : array_like
         Nodes over time, (time, 3, n + 1).
     segment_length : float
-        Length of the segments that are added at the ends [m].
+        Length of the segments added at the ends [m].
     type_of_additional_segment : str or None
         As in `KnotTheory`.
 
@@ -134,7 +134,7 @@ def compute_link(
     segment_length: float,
     type_of_additional_segment: str | None = "next_tangent",
 ) -> Array:
-    """Return the link of a centre line and the line at a radius from it along the normals.
+    """Return the link of a centre line and the line offset from it by a radius along the normals.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def compute_link(
     radius : array_like
         Radii of elements over time, (time, n).
     segment_length : float
-        Length of the segments that are added at the ends [m].
+        Length of the segments added at the ends [m].
     type_of_additional_segment : str or None
         As in `KnotTheory`.
 
@@ -156,7 +156,7 @@ def compute_link(
     """
     line, normals = _line_and_normals(center_line, normal_collection)
     offset = np.asarray(radius, dtype=float)[:, None, :] * _across(normals, _tangents(line))
-    # a node has the normal of the element that it ends, the first that of the element it begins
+    # a node takes the normal of the element before it, the first node that of the first element
     other = line + np.concatenate([offset[..., :1], offset], axis=2)
     ends = [_lengthened(line, segment_length, type_of_additional_segment)]
     ends.append(_lengthened_like(other, ends[0]) if ends[0].shape != line.shape else other)
@@ -179,7 +179,7 @@ def _tangents(line: Array) -> Array:
 
 
 def _across(normals: Array, tangents: Array) -> Array:
-    """Return the parts of normals across tangents, of unit length."""
+    """Return the components of normals perpendicular to tangents, normalised."""
     across = normals - tangents * (normals * tangents).sum(axis=1, keepdims=True)
     return across / np.linalg.norm(across, axis=1, keepdims=True)
 
@@ -217,14 +217,14 @@ def _gauss(one: Array, two: Array | None = None) -> np.float64:
     r13, r14, r24, r23 = (_unit(r) for r in (other[:-1] - start, other[1:] - start, other[1:] - end, other[:-1] - end))
     area = _triangle(r13, r24, r14) + _triangle(r13, r23, r24)
     if two is None:
-        # a segment and its neighbours lie in a plane: no area, but for rounding
+        # a segment and its neighbour are coplanar: the area is zero but for rounding
         i, j = np.indices(area.shape)
         area = np.where(np.abs(i - j) > 1, area, 0.0)
     return area.sum() / (4.0 * np.pi)
 
 
 def _triangle(a: Array, b: Array, c: Array) -> Array:
-    """Return the signed area of triangles on the unit sphere, of corners (..., 3)."""
+    """Return the signed area of triangles on the unit sphere with corners (..., 3)."""
     volume = (a * np.cross(b, c)).sum(axis=-1)
     return 2.0 * np.arctan2(volume, 1.0 + (a * b).sum(axis=-1) + (b * c).sum(axis=-1) + (c * a).sum(axis=-1))
 

@@ -1,4 +1,4 @@
-"""Rods by their name for annotations in 0.3."""
+"""Rods under their name for annotations in 0.3."""
 
 from ..not_offered import refuse_names
 from .rod_base import RodBase

@@ -1,4 +1,4 @@
-"""What all rods have in common."""
+"""Base class of rods."""
 
 from .energy import RodEnergy
 from .knot_theory import KnotTheory

@@ -1,7 +1,7 @@
-"""What follows from a rod's motion and material: strains, internal loads, energies.
+"""Strains, internal loads and energies from a rod's motion and material.
 
-Written for arrays of one rod, closed or open. *Between* neighbours means between elements k and
-k + 1; a closed rod (a ring) also has the pair of its last element and its first.
+The arrays are those of one rod, closed or open. *Between* neighbours means between elements k and
+k + 1; a closed rod (a ring) also has the pair of its last and first element.
 """
 
 import numpy as np
@@ -15,14 +15,14 @@ def between(values: Array, is_ring: bool) -> tuple[Array, Array]:
 
 
 def difference(values: Array, is_ring: bool) -> Array:
-    """Return a[k] - a[k - 1], with zeros beyond the ends of an open rod: one value more than given."""
+    """Return a[k] - a[k - 1], with zeros beyond the ends of an open rod, which gives one value more."""
     if is_ring:
         return values - np.roll(values, 1, axis=-1)
     return np.diff(values, prepend=0.0, append=0.0)
 
 
 def quadrature(values: Array, is_ring: bool) -> Array:
-    """Return (a[k] + a[k - 1])/2, with zeros beyond the ends of an open rod: one value more than given."""
+    """Return (a[k] + a[k - 1])/2, with zeros beyond the ends of an open rod, which gives one value more."""
     if is_ring:
         return 0.5 * (values + np.roll(values, 1, axis=-1))
     halves = np.zeros((*values.shape[:-1], values.shape[-1] + 1))

@@ -1,4 +1,4 @@
-"""A plane, for systems to touch."""
+"""A plane for contact."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -7,18 +7,18 @@ from ...engine.rod import three
 from .surface_base import SurfaceBase
 
 UNIT = 1e-12
-"""How far the length of a normal may be from 1 for it to be taken as it is"""
+"""Deviation of a normal's length from 1 up to which it is not normalised"""
 
 
 class Plane(SurfaceBase):
-    """A plane that does not move by itself.
+    """A fixed plane.
 
     Parameters
     ----------
     plane_origin : array_like
-        A point of it [m], (3,); an array is followed if it changes between runs or callbacks.
+        A point on it [m], (3,); changes to an array between runs or callbacks take effect.
     plane_normal : array_like
-        Towards the free side; of any length, (3,). An array of unit length is followed too.
+        Towards the free side, of any length, (3,). Changes to an array of unit length take effect too.
 
     Attributes
     ----------

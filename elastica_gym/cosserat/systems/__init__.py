@@ -1,4 +1,4 @@
-"""What systems have in common, by its name in PyElastica."""
+"""Protocols of systems, under their module name in PyElastica."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ __all__ = ["is_system_a_collection"]
 
 
 def is_system_a_collection(system: Any) -> bool:
-    """Return whether it is a simulator, or holds others by indices as one does."""
+    """Return whether it is a simulator or another indexable collection."""
     return callable(getattr(system, "__getitem__", None))
 
 

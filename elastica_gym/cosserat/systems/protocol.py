@@ -1,4 +1,4 @@
-"""What a simulator asks of systems, for annotations and `isinstance`."""
+"""Protocols of systems in a simulator, for annotations and `isinstance`."""
 
 from typing import ClassVar, Protocol, runtime_checkable
 
@@ -7,14 +7,14 @@ from ...engine.model import Array
 
 @runtime_checkable
 class StaticSystemProtocol(Protocol):
-    """What may be appended to a simulator: also surfaces."""
+    """Systems that may be appended to a simulator, including surfaces."""
 
     REQUISITE_MODULES: ClassVar[list[type]]
 
 
 @runtime_checkable
 class SystemProtocol(StaticSystemProtocol, Protocol):
-    """What moves: rods and rigid bodies."""
+    """Moving systems: rods and rigid bodies."""
 
     def compute_internal_forces_and_torques(self, time: float) -> None:
         """Compute internal loads."""
@@ -27,7 +27,7 @@ class SystemProtocol(StaticSystemProtocol, Protocol):
 
 
 class SlenderBodyGeometryProtocol(Protocol):
-    """What moves along a centre line."""
+    """Moving systems with a centre line."""
 
     position_collection: Array
     director_collection: Array

@@ -1,4 +1,4 @@
-"""Time stepping: run a simulator to a time."""
+"""Time steppers and integration of a simulator."""
 
 from tqdm import tqdm
 

@@ -1,4 +1,4 @@
-"""Run a simulator to a time."""
+"""Integrate a simulator over time."""
 
 import time as clock
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from ..modules.base_system import BaseSystemCollection
 from .symplectic_steppers import SymplecticStepper
 
 ENTRY_TIME = 0.1
-"""How long compiled code runs at a time, so that Ctrl-C is heard and progress seen [s]"""
+"""Longest time in compiled code, so that Ctrl-C works and progress is shown [s]"""
 
 
 def integrate(
@@ -21,22 +21,22 @@ def integrate(
     restart_time: float = 0.0,
     progress_bar: bool = True,
 ) -> float:
-    """Run a simulator for a time, and return the time after [s].
+    """Run a simulator for a time, and return the time afterwards [s].
 
-    Compiled code is entered once from each callback to the next, or every tenth of a second.
+    Compiled code is entered once between callbacks, or every tenth of a second.
 
     Parameters
     ----------
     stepper : SymplecticStepper
         Such as ``PositionVerlet()``.
     systems : BaseSystemCollection
-        A finalized simulator; or a single rod that is in none.
+        A finalized simulator, or a single rod outside any simulator.
     final_time : float
-        How long to run [s]; the time step is ``final_time / n_steps``.
+        Duration [s]; the time step is ``final_time / n_steps``.
     n_steps : int
         Number of steps.
     restart_time : float
-        Time to start from [s].
+        Start time [s].
     progress_bar : bool
         Whether to show progress on standard error.
     """
@@ -64,7 +64,7 @@ def integrate(
 
 
 def extend_stepper_interface(stepper: SymplecticStepper, systems: Any) -> tuple[Callable, Any]:
-    """Return ``do_step`` and what it takes as ``stages``, for scripts that step by themselves."""
+    """Return ``do_step`` and its argument ``stages``, for scripts with their own loop."""
     return stepper.do_step, stepper.steps_and_prefactors
 
 

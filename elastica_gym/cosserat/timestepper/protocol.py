@@ -1,4 +1,4 @@
-"""Time steppers by PyElastica's names for annotations."""
+"""Time steppers under PyElastica's names for annotations."""
 
 from .symplectic_steppers import SymplecticStepper
 

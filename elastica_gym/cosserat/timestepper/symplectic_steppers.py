@@ -1,4 +1,4 @@
-"""Symplectic time steppers: drifts of positions and kicks of velocities, in turn."""
+"""Symplectic time steppers: alternating drifts of positions and kicks of velocities."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,7 @@ class SymplecticStepper:
     Attributes
     ----------
     scheme : Scheme
-        The parts of a time step that drifts and kicks take.
+        The fractions of a time step for drifts and kicks.
     """
 
     scheme: Scheme
@@ -29,7 +29,7 @@ class SymplecticStepper:
         return int(self.scheme.drifts.size)
 
     def step(self, systems: "BaseSystemCollection", time: float, dt: float) -> float:
-        """Take one step from a time, call the callbacks that are due, and return the time after [s]."""
+        """Take one step from a time, call the callbacks due, and return the time afterwards [s]."""
         simulation = systems.simulation
         after = simulation.advance(self.scheme, float(dt), 1, float(time))
         simulation.warn_of_divergence()
@@ -46,19 +46,19 @@ class SymplecticStepper:
 
     @property
     def steps_and_prefactors(self) -> Scheme:
-        """The scheme, by the name that scripts pass on to `do_step`."""
+        """The scheme, under the name that scripts pass to `do_step`."""
         return self.scheme
 
 
 class PositionVerlet(SymplecticStepper):
-    """Position Verlet, of second order: half a drift, a kick, half a drift."""
+    """Position Verlet, second order: half a drift, a kick, half a drift."""
 
     def __init__(self) -> None:
         self.scheme = Scheme(drifts=np.array([0.5, 0.5]), kicks=np.array([1.0]))
 
 
 class PEFRL(SymplecticStepper):
-    """The position extended Forest-Ruth-like algorithm, of fourth order (Omelyan et al. 2002): four kicks a step."""
+    """Position extended Forest-Ruth-like algorithm, fourth order (Omelyan et al. 2002): four kicks per step."""
 
     XI = 0.1786178958448091
     LAMBDA = -0.2123418310626054

@@ -1,4 +1,4 @@
-"""`modules` by its name in 0.2.x."""
+"""`modules` under its name in 0.2.x."""
 
 from ..modules import BaseSystemCollection, CallBacks, Connections, Constraints, Contact, Damping, Forcing
 

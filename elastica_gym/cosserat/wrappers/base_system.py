@@ -1,4 +1,4 @@
-"""`modules.base_system` by its name in 0.2.x."""
+"""`modules.base_system` under its name in 0.2.x."""
 
 from ..modules.base_system import BaseSystemCollection
 

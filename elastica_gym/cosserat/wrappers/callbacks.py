@@ -1,4 +1,4 @@
-"""`modules.callbacks` by its name in 0.2.x."""
+"""`modules.callbacks` under its name in 0.2.x."""
 
 from ..modules.callbacks import CallBacks
 from ..not_offered import refuse_names

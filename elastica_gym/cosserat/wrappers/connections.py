@@ -1,4 +1,4 @@
-"""`modules.connections` by its name in 0.2.x."""
+"""`modules.connections` under its name in 0.2.x."""
 
 from ..modules.connections import Connections
 from ..not_offered import refuse_names

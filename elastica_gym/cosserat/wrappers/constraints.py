@@ -1,4 +1,4 @@
-"""`modules.constraints` by its name in 0.2.x."""
+"""`modules.constraints` under its name in 0.2.x."""
 
 from ..modules.constraints import Constraints
 from ..not_offered import refuse_names

@@ -1,4 +1,4 @@
-"""`modules.contact` by its name in 0.2.x."""
+"""`modules.contact` under its name in 0.2.x."""
 
 from ..modules.contact import Contact
 

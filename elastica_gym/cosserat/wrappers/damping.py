@@ -1,4 +1,4 @@
-"""`modules.damping` by its name in 0.2.x."""
+"""`modules.damping` under its name in 0.2.x."""
 
 from ..modules.damping import Damping
 

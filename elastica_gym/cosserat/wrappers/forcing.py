@@ -1,4 +1,4 @@
-"""`modules.forcing` by its name in 0.2.x."""
+"""`modules.forcing` under its name in 0.2.x."""
 
 from ..modules.forcing import Forcing
 from ..not_offered import refuse_names

@@ -1,1 +1,1 @@
-"""Joints off the axis: side by side, or at any point of a system."""
+"""Off-axis joints: side by side, or at any point of a system."""

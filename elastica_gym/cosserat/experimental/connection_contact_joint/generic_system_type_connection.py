@@ -1,4 +1,4 @@
-"""Joints between any points that move with rods and rigid bodies."""
+"""Joints between any points fixed to rods and rigid bodies."""
 
 from typing import Any
 
@@ -11,15 +11,15 @@ from ...joint import ConnectionBase, FixedJoint
 
 
 def compute_position_of_point(system: Any, point: ArrayLike, index: int) -> Array:
-    """Return a point that moves with a node and its element, or a body [m], (3,).
+    """Return the position of a point fixed to a node and its element, or to a body [m], (3,).
 
     Parameters
     ----------
     system : CosseratRod or RigidBodyBase
     point : array_like
-        From the node, or the body's centre, in the material frame [m], (3,).
+        Offset from the node or the body's centre, in the material frame [m], (3,).
     index : int
-        Number of the node and the element.
+        Index of the node and its element.
     """
     return system.position_collection[..., index] + system.director_collection[..., index].T @ np.asarray(point)
 
@@ -40,7 +40,7 @@ class GenericSystemTypeFreeJoint(ConnectionBase):
     nu : float
         Force per relative velocity [N s/m].
     point_system_one, point_system_two : array_like, optional
-        The points, from the node or the body's centre, in the material frame [m], (3,); zero unless given.
+        The points, as offsets from the node or the body's centre, in the material frame [m], (3,); default zero.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class GenericSystemTypeFreeJoint(ConnectionBase):
         )
 
     def apply_forces(self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0) -> None:
-        """Add k (x2 - x1) + nu (v2 - v1) to one, its opposite to two, and the torques of both."""
+        """Add k (x2 - x1) + nu (v2 - v1) to one, its opposite to two, and the resulting torques."""
         ends = (system_one, self.point_system_one, index_one), (system_two, self.point_system_two, index_two)
         x1, x2 = (compute_position_of_point(*end) for end in ends)
         v1, v2 = (compute_velocity_of_point(*end) for end in ends)
@@ -69,11 +69,11 @@ class GenericSystemTypeFreeJoint(ConnectionBase):
     def apply_torques(
         self, system_one: Any, index_one: Any, system_two: Any, index_two: Any, time: float = 0.0
     ) -> None:
-        """Do nothing: the joint turns freely."""
+        """Do nothing: the joint rotates freely."""
 
 
 class GenericSystemTypeFixedJoint(GenericSystemTypeFreeJoint):
-    """A joint between two points that also holds the directions of two systems at a rest rotation.
+    """A joint between two points that also holds the relative rotation of two systems.
 
     Parameters
     ----------

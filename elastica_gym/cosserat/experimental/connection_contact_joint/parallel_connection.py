@@ -1,4 +1,4 @@
-"""Rods that run side by side, held together where their surfaces touch."""
+"""Rods side by side, joined at their surfaces."""
 
 from typing import Any
 
@@ -15,19 +15,19 @@ from ...not_offered import refuse_methods
 def get_connection_vector_straight_straight_rod(
     rod_one: Any, rod_two: Any, rod_one_idx: tuple[int, int], rod_two_idx: tuple[int, int]
 ) -> tuple[Array, Array, Array]:
-    """Return where elements of two rods face each other, as they are now.
+    """Return the directions and gaps between facing elements of two rods in their current state.
 
     Parameters
     ----------
     rod_one, rod_two : CosseratRod
     rod_one_idx, rod_two_idx : tuple of int
-        First and last + 1 of the m elements of each.
+        First and last + 1 of the m elements on each rod.
 
     Returns
     -------
     tuple of Array
-        Unit vectors from each element of one to that of two, (3, m), and the reverse, (3, m), each in the material
-        frame of where it begins; and how far their surfaces are apart [m], (m,).
+        Unit vectors from each element of rod one to that of rod two, (3, m), and the reverse, (3, m), each in the
+        material frame of its starting element; and the gaps between their surfaces [m], (m,).
     """
     one, two = slice(*rod_one_idx), slice(*rod_two_idx)
     between = _middles(rod_two)[:, two] - _middles(rod_one)[:, one]
@@ -42,20 +42,20 @@ def get_connection_vector_straight_straight_rod(
 
 @refuse_methods
 class SurfaceJointSideBySide(ConnectionBase):
-    """A spring between points of the surfaces of two rods, a damper between their elements, and repulsion.
+    """A spring between surface points of two rods, a damper between their elements, and repulsion.
 
     Parameters
     ----------
     k : float or array_like
-        Force per distance of the points [N/m]; one for all or one for each of the m pairs of elements.
+        Force per distance of the points [N/m]; one for all or one per pair of elements, (m,).
     nu : float or array_like
         Force per relative velocity of the elements [N s/m].
     k_repulsive : float or array_like
         Force per overlap to the power of 3/2 [N/m^(3/2)].
     rod_one_direction_vec_in_material_frame, rod_two_direction_vec_in_material_frame : array_like
-        Unit vectors to the other rod, (3, m) or, of one pair, (3,).
+        Unit vectors to the other rod, (3, m) or, for one pair, (3,).
     offset_btw_rods : float or array_like
-        How far the surfaces are apart at rest [m]; half of it grows with the radius of each rod.
+        Gap between the surfaces at rest [m]; half of it scales with the radius of each rod.
     """
 
     IS_COMPILED = True
