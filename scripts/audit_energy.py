@@ -1,8 +1,8 @@
-"""Print where energy comes from and where it goes under each policy: the work of each kind of load, over the muscles'.
+"""Print the energy balance under each policy: the work of each kind of load, relative to that of the muscles.
 
-Muscles may put energy in; friction and damping take it out. Whatever else gives energy is a fault that learning may
-live on: loads of strains that derive from no potential (imbalance), ground or contact that return more than they got.
-So is an element that has turned inside out.
+Muscles may add energy; friction and damping remove it. Any other energy source is a fault that learning may exploit:
+non-conservative loads of strains (imbalance), or ground and contact that return more energy than they absorbed. So is
+an inverted element.
 """
 
 import dataclasses
@@ -20,23 +20,23 @@ from elastica_gym.rl.seeds import TEST
 
 POLICIES = ("random", "full", "scripted", "shipped")
 CONSERVATIVE = {"ground": ("ground reaction", "ground spring"), "contact": ("contact spring",)}
-"""Kinds of load that must give no energy, where what a spring holds at the end is next to nothing"""
+"""Kinds of load that must not add energy; the energy left in springs at the end is negligible"""
 PASSIVE = ("ground friction", "contact friction", "ground damping", "contact damping", "damping")
-"""Kinds of load that must take energy"""
+"""Kinds of load that must remove energy"""
 SOURCES = ("strains", *CONSERVATIVE, *PASSIVE)
-"""What energy may come from without being put in, in the order of `Audit.gains`"""
+"""Possible spurious sources of energy, in the order of `Audit.gains`"""
 
 
 @dataclasses.dataclass
 class Arguments:
-    """Audit episodes of every environment under random actions, full strength, its script and its shipped policies."""
+    """Audit every environment under random and full-strength actions, its script and its shipped policies."""
 
     env: tuple[str, ...] = IDS
     """Environment ids."""
     policies: tuple[str, ...] = POLICIES
-    """Of random, full, scripted and shipped."""
+    """Any of random, full, scripted and shipped."""
     episodes: int = 4
-    """Episodes of each, side by side."""
+    """Parallel episodes per policy."""
     steps: int = 100
     """Control steps of each episode."""
     seed: int = TEST.start
@@ -45,26 +45,26 @@ class Arguments:
 
 @dataclasses.dataclass(frozen=True)
 class Audit:
-    """Work over episodes, as part of what the muscles did."""
+    """Work over episodes, relative to that of the muscles."""
 
     muscles: float
-    """Work of the muscles, the mean of episodes [J]"""
+    """Work of the muscles, mean over episodes [J]"""
     work: dict[str, float]
     """Work of each kind of load over that of the muscles"""
     imbalance: float
-    """Energy that the loads of strains made from nothing, over the work of the muscles"""
+    """Spurious energy from the loads of strains, over the work of the muscles"""
     shortest: float
-    """Least length of an element along its director d3, over its length at rest; below 0 it is inside out"""
+    """Minimum length of an element along its director d3, over its rest length; below 0 it is inverted"""
 
     @property
     def gains(self) -> dict[str, float]:
-        """Energy from nothing by source, over the work of the muscles; where there is no fault at most 0."""
+        """Spurious energy by source, over the work of the muscles; at most 0 without a fault."""
         gains = {name: sum(self.work[kind] for kind in kinds) for name, kinds in CONSERVATIVE.items()}
         return {"strains": self.imbalance, **gains, **{kind: self.work[kind] for kind in PASSIVE}}
 
 
 def audit(env_id: str, policy: str, *, episodes: int, steps: int, seed: int) -> Iterator[tuple[str, Audit]]:
-    """Audit an environment under a kind of policy; yields nothing where it has none of that kind."""
+    """Audit an environment under a kind of policy; yields nothing if it has none of that kind."""
     from elastica_gym.rl.cards import load_pretrained, names, read_card
     from elastica_gym.rl.policies import FullStrengthPolicy, baseline
 
@@ -82,7 +82,7 @@ def _audit(env_id: str, policy: object, episodes: int, steps: int, seed: int) ->
     batch = env.unwrapped
     policy.reset([seed + i for i in range(episodes)])
     observations, _ = env.reset(seed=seed)
-    # episodes that end go on: the physics does
+    # autoreset is off: the physics continues when an episode ends
     ledger = batch.integrator = Ledger(batch.body.model, batch.state, batch.control)
     shortest = np.inf
     for _ in range(steps):
@@ -95,7 +95,7 @@ def _audit(env_id: str, policy: object, episodes: int, steps: int, seed: int) ->
 
 
 def _shortest(model: Model, state: State) -> float:
-    """Return the least stretch of an element along its director d3."""
+    """Return the minimum stretch of an element along its director d3."""
     along = (state.Q[:, 2, :, :-1] * np.diff(state.x, axis=2)).sum(axis=1)
     is_element = model.rest_length[:-1] > 0.0
     return float((along * model.inv_rest_length[:-1])[:, is_element].min())
@@ -117,8 +117,8 @@ def main() -> None:
         choose("policy", policy, POLICIES)
     check_bounds(dataclasses.asdict(arguments), {"episodes": 1, "steps": 1, "seed": 0})
     table = Table(
-        title="Energy over the work of the muscles: what is positive comes from nothing. "
-        "Shortest element, over its length at rest"
+        title="Energy over the work of the muscles: positive values are spurious. "
+        "Shortest element, over its rest length"
     )
     pairs = [(env_id, policy) for env_id in arguments.env for policy in arguments.policies]
     rows = []

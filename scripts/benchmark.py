@@ -1,6 +1,6 @@
-"""Measure how fast the physics is beside PyElastica 1.0.0, and how fast the environments are.
+"""Measure the speed of the physics relative to PyElastica 1.0.0, and that of the environments.
 
-``python scripts/benchmark.py`` prints tables and JSON; ``--start`` only measures how long a first step takes.
+``python scripts/benchmark.py`` prints tables and JSON; ``--start`` only measures the time to the first step.
 """
 
 import argparse
@@ -25,26 +25,26 @@ ROOT = Path(__file__).resolve().parents[1]
 INSTALL = 'pip install "elastica-gym[train,bench]"'
 SIZES = (20, 50, 100, 200)
 DAMPING = 0.002
-"""Of velocities, as the original's damping of translation [1/s]"""
+"""Damping rate of velocities, as of the original's translational damping [1/s]"""
 TARGETS = {50: 35.0, 200: 22.0}
-"""How many times PyElastica's speed is demanded of the snake, by number of elements"""
+"""Required speed-up over PyElastica on the snake, by number of elements"""
 ARMS_TARGET = 30.0
-"""And of two arms about an object"""
+"""Required speed-up on two arms around an object"""
 OWN_FORCE_LIMIT = 3.0
-"""What a force of the user's own that does nothing may add to a step of the library [us]"""
+"""Largest time that a user's own empty force may add to a step of the library [us]"""
 LIBRARY_STEPS_OURS, LIBRARY_STEPS_THEIRS = 200, 10
 THREADS_TARGET = 1.7
 ONE_OF_EACH = ("elastica_gym/SnakeForward-v1", "elastica_gym/OctopusReach-v1")
-"""An environment of each animal; its other tasks have the same physics"""
+"""One environment per animal; its other tasks have the same physics"""
 COLD_LIMIT, WARM_LIMIT = 40.0, 3.0
-"""Time to the first step, with and without compiling [s]"""
+"""Largest time to the first step, with and without compilation [s]"""
 WARM_UP = 2.0
-"""Time after which the snake is timed, crawling at full strength [s]"""
+"""Simulated time before the measurement; the snake then crawls at full strength [s]"""
 STEPS_OURS = 1000
 STEPS_THEIRS, STEPS_THEIRS_ARMS = 100, 20
-"""Steps of a slice, which so takes milliseconds of either program"""
+"""Steps per slice, so that a slice takes milliseconds in either program"""
 SLICES = 8
-"""A pair is the best of as many slices of each program, in turn, so that other work on the machine spoils few"""
+"""Interleaved slices of each program per pair, of which the best counts: this rejects other load on the machine"""
 
 FIRST_STEP = """
 import time
@@ -58,7 +58,7 @@ print(time.perf_counter() - start)
 
 
 def main() -> None:
-    """Measure what was asked for, and print it."""
+    """Run the requested measurements and print them."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--start", action="store_true", help="only the time to the first step, cold and warm")
     parser.add_argument("--pairs", type=int, default=9, help="interleaved pairs of measurements (default: 9)")
@@ -88,7 +88,7 @@ def main() -> None:
 
 
 def require_extras() -> None:
-    """Exit with the command that mends it unless what is compared with is installed."""
+    """Exit with the install command unless PyElastica and rich are installed."""
     try:
         import elastica  # noqa: F401
         import rich  # noqa: F401
@@ -99,7 +99,7 @@ def require_extras() -> None:
 
 
 def describe_machine() -> dict[str, Any]:
-    """Return what the numbers depend on."""
+    """Return the machine and versions that the numbers depend on."""
     import llvmlite.binding
 
     names = ("elastica-gym", "numpy", "numba", "llvmlite", "gymnasium", "pyelastica")
@@ -114,7 +114,7 @@ def describe_machine() -> dict[str, Any]:
 
 
 def cpu_name() -> str:
-    """Return the processor's name as the system tells it."""
+    """Return the processor's name as reported by the system."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
@@ -123,7 +123,7 @@ def cpu_name() -> str:
 
 
 def found(name: str) -> str:
-    """Return the version of a package, or where it comes from if it is not installed."""
+    """Return the version of a package, or its source if it is not installed."""
     try:
         return version(name)
     except ImportError:
@@ -134,14 +134,14 @@ def found(name: str) -> str:
 
 
 def measure_snake(n: int, n_pairs: int) -> dict[str, Any]:
-    """Time a step of the snake of n elements, damping and static friction on, in both programs on one thread."""
+    """Time a step of a snake of n elements with damping and static friction, in both programs on one thread."""
     sys.path.insert(0, str(ROOT))
     from tests.engine import oracle
     from tests.engine.scenes import GRAVITY, LENGTH, TIME_STEP, WAVE, ground, snake
 
     dt, loads = TIME_STEP * 50 / n, {"gravity": GRAVITY, "planes": [ground()], "waves": [WAVE]}
     rod = snake(n, damping_rate=DAMPING)
-    # PyElastica adds 1e-14 m to the length of an element, which the strains of short ones show (docs/differences.md)
+    # PyElastica adds 1e-14 m to element lengths, which shows in the strains of short ones (docs/differences.md)
     agreement = require_agreement("the snake", rod, dt, 1e-11 + 2e-14 * n / LENGTH, **loads)
     pair = oracle.both([rod], dt, **loads)
     return {
@@ -154,11 +154,11 @@ def measure_snake(n: int, n_pairs: int) -> dict[str, Any]:
 
 
 def measure_arms(n_pairs: int) -> dict[str, Any]:
-    """Time a step of two arms on the ground, 42 muscles on, in whose bend an object stands, and self contact.
+    """Time a step of two arms on the ground around an object, with 42 active muscles and self contact.
 
-    PyElastica does what it can of the same: its object has no friction with the ground, its self contact
-    none at all, and its muscles, which hold their couples, cost it nothing. Its contact is its own in what is
-    timed, and corrected in what is compared (docs/differences.md), with the object a little above the ground.
+    PyElastica runs the closest scene that it can: without friction between object and ground or in self
+    contact, and with constant muscle couples, which cost it nothing. Its own contact is timed; for the
+    comparison it is corrected (docs/differences.md), with the object slightly above the ground.
     """
     sys.path.insert(0, str(ROOT))
     import numpy as np
@@ -183,9 +183,9 @@ def measure_arms(n_pairs: int) -> dict[str, Any]:
 
 
 def measure_rods(n_rods: int, n_pairs: int) -> dict[str, Any]:
-    """Time a step of rods of 20 elements, joined and touching, written once and run by both libraries.
+    """Time a step of joined and touching rods of 20 elements, by the same script in both libraries.
 
-    PyElastica's contact is its own in what is timed, and corrected in what is compared (docs/differences.md).
+    PyElastica's own contact is timed; for the comparison it is corrected (docs/differences.md).
     """
     sys.path.insert(0, str(ROOT))
     import elastica
@@ -228,7 +228,7 @@ def measure_rods(n_rods: int, n_pairs: int) -> dict[str, Any]:
 
 
 def require_same_rods(n_rods: int, n_steps: int = 100) -> dict[str, float]:
-    """Exit unless both libraries compute the same of rods that are joined and touch."""
+    """Exit unless both libraries agree on joined and touching rods."""
     import elastica
     import many_rods
     import numpy as np
@@ -250,7 +250,7 @@ def require_same_rods(n_rods: int, n_steps: int = 100) -> dict[str, float]:
 
 
 def measure_own_force(n_pairs: int) -> dict[str, float]:
-    """Time a step of the library with a force of the user's own that does nothing, and one without."""
+    """Time a step of the library with and without a user's own empty force."""
     import many_rods
 
     import elastica_gym.cosserat as library
@@ -275,7 +275,7 @@ def measure_own_force(n_pairs: int) -> dict[str, float]:
 
 
 def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_pairs: int) -> dict[str, Any]:
-    """Time both programs in turn, from where ours is after the warm-up."""
+    """Time both programs in turn, from our state after the warm-up."""
     from elastica_gym.engine import advance
     from tests.engine import oracle
 
@@ -301,7 +301,7 @@ def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_p
 
 
 def require_agreement(name: str, rod: Any, dt: float, allowed: float, **loads: Any) -> dict[str, float]:
-    """Exit unless both programs compute the same on the scene that is timed."""
+    """Exit unless both programs agree on the timed scene."""
     from elastica_gym.engine import advance
     from tests.engine import oracle
 
@@ -318,13 +318,13 @@ def require_agreement(name: str, rod: Any, dt: float, allowed: float, **loads: A
 
 
 def best_slices(runs: Sequence[Callable[[], object]], n_slices: int = SLICES) -> list[float]:
-    """Return the least time of each run [s], of so many slices of all of them in turn."""
+    """Return the minimum time of each run [s], over interleaved slices."""
     slices = [[timed(run) for run in runs] for _ in range(n_slices)]
     return [min(column) for column in zip(*slices, strict=True)]
 
 
 def timed(call: Callable[[], object]) -> float:
-    """Return how long a call takes [s]."""
+    """Return the duration of a call [s]."""
     start = time.perf_counter()
     call()
     return time.perf_counter() - start
@@ -334,10 +334,10 @@ def timed(call: Callable[[], object]) -> float:
 
 
 def measure_environments(env_id: str, n_pairs: int, num_envs: int = 64, n_steps: int = 2) -> dict[str, Any]:
-    """Time environment steps of a batch on one thread and on two, random actions, as pairs of the best slices of each.
+    """Time environment steps of a batch with random actions on one and on two threads, as pairs of the best slices.
 
-    And of half the batch in each of two processes that share nothing: two threads cannot do better than they. What
-    they fall short of twice one is what the machine withholds, such as the second half of a core that has two.
+    Also time half the batch in each of two independent processes, an upper bound for two threads: their shortfall
+    from a factor of two is due to the machine, such as hyper-threads that share a core.
     """
     half = num_envs // 2
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as other:
@@ -370,7 +370,7 @@ def measure_environments(env_id: str, n_pairs: int, num_envs: int = 64, n_steps:
 
 
 _made: list[Any] = []
-"""The batch of a process that was started to be timed"""
+"""The batch of a timed worker process"""
 
 
 def begin(env_id: str, num_envs: int) -> None:
@@ -379,7 +379,7 @@ def begin(env_id: str, num_envs: int) -> None:
 
 
 def make_batch(env_id: str, num_envs: int, n_threads: int = 1) -> Any:
-    """Return a batch that has begun."""
+    """Return a batch after reset."""
     import gymnasium
     from gymnasium.vector import AutoresetMode
 
@@ -399,7 +399,7 @@ def run_batch(envs: Any, n_steps: int) -> None:
 
 
 def run_made(n_steps: int) -> None:
-    """Step the batch that this process began."""
+    """Step the batch made by `begin`."""
     run_batch(_made[0], n_steps)
 
 
@@ -407,7 +407,7 @@ def run_made(n_steps: int) -> None:
 
 
 def measure_start() -> dict[str, float]:
-    """Return the time from import to the end of the first step, with an empty cache and with a full one [s]."""
+    """Return the time from import to the end of the first step, with an empty and a full cache [s]."""
     with tempfile.TemporaryDirectory() as folder:
         environment = {**os.environ, "ELASTICA_GYM_CACHE_DIR": folder}
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
@@ -422,14 +422,14 @@ def measure_start() -> dict[str, float]:
 
 
 def describe_start(start: dict[str, float]) -> str:
-    """Return a line on how long a first step takes."""
+    """Return a line with the times to the first step."""
     return (
         f"first step: {start['cold_s']:.1f} s cold (at most {COLD_LIMIT:g}), "
         f"{start['warm_s']:.1f} s warm (at most {WARM_LIMIT:g})"
     )
 
 
-# what is printed
+# output
 
 
 def show(results: dict[str, Any]) -> None:
@@ -438,7 +438,7 @@ def show(results: dict[str, Any]) -> None:
     from rich.table import Table
 
     console = Console()
-    physics = Table(title="One step on one thread [μs], beside PyElastica 1.0.0")
+    physics = Table(title="One step on one thread [μs], against PyElastica 1.0.0")
     for column in ("scene", "elements", "PyElastica", "here", "ratio", "demanded", "simulated s per s"):
         physics.add_column(column, justify="left" if column == "scene" else "right")
     for row in [*results["physics"], *results["library"]]:
@@ -467,7 +467,7 @@ def show(results: dict[str, Any]) -> None:
     own = results["own_force"]
     console.print(physics, environments)
     console.print(
-        f"a force of one's own that does nothing adds {own['added_us']:.2f} us to a step of the library "
+        f"a user's own empty force adds {own['added_us']:.2f} us to a step of the library "
         f"(at most {own['limit_us']:g})",
         highlight=False,
     )

@@ -1,4 +1,4 @@
-"""Count how often the simulation diverges under random actions, each held for one control step."""
+"""Count divergences of the simulation under random actions, each held for one control step."""
 
 import dataclasses
 
@@ -17,17 +17,17 @@ class Arguments:
     env: tuple[str, ...] = IDS
     """Environment ids."""
     steps: int = 100_000
-    """Control steps of each."""
+    """Control steps per environment."""
     n_envs: int = 100
     """Environments in the batch."""
     seed: int = 0
     """Seed of environments and actions."""
     sim_dt: float | None = None
-    """Time step of the physics [s]; by default the body's."""
+    """Time step of the physics [s]; default the body's."""
 
 
 def count(env_id: str, arguments: Arguments) -> tuple[int, int, float]:
-    """Return the divergences, the control steps they happened in, and the time step of the physics [s]."""
+    """Return the number of divergences, that of control steps, and the time step of the physics [s]."""
     from elastica_gym.progress import track
 
     n = arguments.n_envs

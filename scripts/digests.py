@@ -1,11 +1,11 @@
-"""Print digests of what environments, library and training compute, to compare two versions on one machine.
+"""Print digests of the results of environments, library and training, to compare two versions on one machine.
 
-A change that is meant to keep behaviour keeps every digest:
+A change that preserves behaviour preserves every digest:
 
     python scripts/digests.py --out before.json
     python scripts/digests.py --compare before.json
 
-On another machine digests differ, as its kernels do.
+Digests depend on the machine, as compiled kernels do.
 """
 
 import dataclasses
@@ -39,19 +39,19 @@ class Arguments:
     out: Path | None = None
     """File for the digests, as JSON."""
     compare: Path | None = None
-    """File of digests to compare with; the command fails where one differs."""
+    """File of digests to compare with; the command fails if any differs."""
     parts: tuple[str, ...] = ("environments", "library", "training", "policies")
-    """What to digest."""
+    """Parts to digest."""
 
 
 class Digest:
-    """A digest of numbers, bit for bit."""
+    """A digest of the bits of numbers."""
 
     def __init__(self) -> None:
         self._hash = hashlib.sha256()
 
     def add(self, *values: object) -> None:
-        """Add arrays, or anything that NumPy takes."""
+        """Add arrays or array-likes."""
         for value in values:
             if isinstance(value, dict):
                 self.add(*(value[key] for key in sorted(value)))
@@ -63,7 +63,7 @@ class Digest:
 
 
 def environments() -> Iterator[tuple[str, Callable[[], str]]]:
-    """Yield names and digests of every id, single and in a batch."""
+    """Yield names and digests of every environment id, single and in a batch."""
     for env_id in (*IDS, *GOAL_IDS):
         name = env_id.partition("/")[2]
         yield f"{name}, single", lambda env_id=env_id: _environment(env_id, batch=False)
@@ -98,7 +98,7 @@ def library() -> Iterator[tuple[str, Callable[[], str]]]:
 
 
 def _scene(number: int) -> str:
-    """Digest one to three rods with features drawn by its number."""
+    """Digest one to three rods with random features, seeded by the scene's number."""
     rng, sim, rods, dt = np.random.default_rng(number), Simulator(), [], 2.0**-16
     for place in range(1 + number % 3):
         rod = ea.CosseratRod.straight_rod(
@@ -144,7 +144,7 @@ def _scene(number: int) -> str:
 
 
 def _add_features(sim: Simulator, rod: ea.CosseratRod, rng: np.random.Generator, dt: float) -> None:
-    """Add forces, a constraint and damping to a rod, each or not."""
+    """Randomly add forces, a constraint and damping to a rod."""
     if rng.random() < 0.6:
         sim.add_forcing_to(rod).using(ea.GravityForces, -9.81 * Y)
     if rng.random() < 0.4:
@@ -273,7 +273,7 @@ def main() -> None:
         changed = [name for name in found if before.get(name) != found[name]]
         if changed:
             raise BadInputError("digests differ: " + "; ".join(changed))
-        print(f"all {len(found)} digests are those of {arguments.compare}")
+        print(f"all {len(found)} digests agree with {arguments.compare}")
     if arguments.out is None and arguments.compare is None:
         for name, value in found.items():
             print(f"{value}  {name}")

@@ -1,4 +1,4 @@
-"""Draw what each of the 21 activations of an arm does to an octopus.
+"""Draw the effect of each of an arm's 21 activations on an octopus.
 
 ``python scripts/draw_activations.py`` writes docs/images/activations.png.
 """
@@ -22,7 +22,7 @@ SECONDS = 0.4
 EFFECT = {"normal": "bends sideways", "binormal": "lifts", "tangent": "twists"}
 COLORS = ("#eb7f26", "#2f7fb8", "#1f7a72")
 ARM = "second"
-"""The second arm, which is after the head"""
+"""The second arm, after the head"""
 
 
 def main() -> None:
@@ -30,7 +30,7 @@ def main() -> None:
     require_extra("train")
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     default = Path(__file__).parents[1] / "docs" / "images" / "activations.png"
-    parser.add_argument("--output", type=Path, default=default, help="where to write the picture")
+    parser.add_argument("--output", type=Path, default=default, help="file of the picture")
     output: Path = parser.parse_args().output
     make_folder(output.parent)
     figure = draw()
@@ -39,7 +39,7 @@ def main() -> None:
 
 
 def draw() -> "Figure":
-    """Return a figure of an octopus at rest, and a moment after each activation of its second arm went to 1."""
+    """Return a figure of an octopus at rest, and shortly after each activation of its second arm is set to 1."""
     from matplotlib.figure import Figure
 
     shapes, rolls = play()
@@ -67,7 +67,7 @@ def draw() -> "Figure":
 
 
 def play() -> tuple[np.ndarray, np.ndarray]:
-    """Return nodes ahead, up and to the right of the head [m], and the roll of elements [rad], with none and each."""
+    """Return nodes ahead, up and right of the head [m], and element rolls [rad], at rest and for each activation."""
     env = gymnasium.make_vec(ENV, num_envs=1 + OCTOPUS.n_activations, spread="arc")
     batch = env.unwrapped
     batch.reset(seed=[0] * batch.num_envs)  # type: ignore[attr-defined]
@@ -79,7 +79,7 @@ def play() -> tuple[np.ndarray, np.ndarray]:
     x, y, z = (state.x[:, c, first : first + n + 1] - pose.head[:, c, None] for c in range(3))
     hx, hz = pose.heading.T[..., None]
     shapes = np.stack([x * hx + z * hz, y, z * hx - x * hz], axis=1)
-    # what the crown's element is turned by is the head's
+    # the roll of the crown's element is that of the head
     up = state.Q[:, :2, 1, first : first + n]
     rolls = np.unwrap(np.arctan2(up[:, 0], up[:, 1]), axis=1)
     env.close()

@@ -27,7 +27,7 @@ def main() -> None:
     require_extra("train")
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     default = Path(__file__).parents[1] / "docs" / "images" / "muscles.png"
-    parser.add_argument("--output", type=Path, default=default, help="where to write the picture")
+    parser.add_argument("--output", type=Path, default=default, help="file of the picture")
     output: Path = parser.parse_args().output
     make_folder(output.parent)
     figure = draw(snake())
@@ -36,7 +36,7 @@ def main() -> None:
 
 
 def draw(body: Body) -> "Figure":
-    """Return a figure of the couple along the body of every activation at 1."""
+    """Return a figure of the couple along the body for every activation at 1."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
@@ -64,7 +64,7 @@ def draw(body: Body) -> "Figure":
         ax.axvline(0.5, color="0.75", linewidth=0.8, linestyle=":")
         ax.spines[["top", "right"]].set_visible(False)
     axes[-1].set_xlim(0.0, 1.0)
-    axes[-1].set_xlabel("place along the body, from tail (0) to head (1)")
+    axes[-1].set_xlabel("position along the body, from tail (0) to head (1)")
     labels = [f"level {level}: {count} per half" for level, count in enumerate(LEVELS)]
     lines = [Line2D([], [], color=color) for color in COLORS]
     figure.legend(lines, labels, loc="outside upper right", ncols=len(LEVELS), frameon=False, fontsize=9)
@@ -72,7 +72,7 @@ def draw(body: Body) -> "Figure":
 
 
 def draw_arm(ax: "Axes", along: np.ndarray, functions: np.ndarray) -> None:
-    """Draw the seven functions (7, m) of an arm at places (m,) along the body, a colour for each level."""
+    """Draw the seven functions (7, m) of an arm at positions (m,) along the body, one colour per level."""
     for color, row in zip(np.repeat(COLORS, LEVELS), functions, strict=True):
         ax.plot(along, row, color=color, linewidth=1.4)
         ax.fill_between(along, row, color=color, alpha=0.10, linewidth=0)

@@ -1,4 +1,4 @@
-# Sourced by the other scripts: makes .venv beside them and installs pinned versions, once.
+# Sourced by the other scripts: makes .venv in the repository and installs pinned versions, once.
 #   install_into_venv EXTRAS     EXTRAS as in pip: train,viz
 
 install_into_venv() {
@@ -11,11 +11,11 @@ install_into_venv() {
         echo "Making .venv ..."
         "$python" -m venv .venv
     fi
-    # what was installed, and from which texts: a second run has nothing to do
+    # stamp of the installed state: a second run does nothing
     local stamp=".venv/installed-$extras" state
     state=$(cat pyproject.toml constraints.txt | cksum)
     if [ "$(cat "$stamp" 2>/dev/null)" != "$state" ]; then
-        echo "Installing elastica-gym[$extras] and what it needs into .venv (a few minutes the first time) ..."
+        echo "Installing elastica-gym[$extras] and its dependencies into .venv (a few minutes the first time) ..."
         .venv/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[$extras]"
         echo "$state" > "$stamp"
     fi

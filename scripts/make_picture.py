@@ -1,8 +1,8 @@
-"""Make the picture of the README: both animals at several moments of one episode, and their heads' trails.
+"""Make the picture of the README: both animals at several times of one episode, and the trails of their heads.
 
-Above, a snake that goes along its initial heading; below, an octopus that goes away from its object, both from left to
-right. ``python scripts/make_picture.py`` follows the scripted crawls, ``--snake-run DIR`` and ``--octopus-run DIR``
-trained policies instead; either way it writes docs/images/animals.png.
+Above, a snake crawls along its initial heading; below, an octopus crawls away from its object, both from left to
+right. ``python scripts/make_picture.py`` uses the scripted crawls, ``--snake-run DIR`` and ``--octopus-run DIR``
+trained policies; it writes docs/images/animals.png.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from elastica_gym.viz.frames import animal_of, home, objects, outline, trail
 ENVS = {"snake": "elastica_gym/SnakeForward-v1", "octopus": "elastica_gym/OctopusCrawl-v1"}
 OUTPUT = Path(__file__).parents[1] / "docs" / "images" / "animals.png"
 GAP = 10
-"""Height of the white between the animals [pixels]"""
+"""Height of the white gap between the animals [pixels]"""
 
 
 def main() -> int:
@@ -32,10 +32,10 @@ def main() -> int:
     for animal in ENVS:
         parser.add_argument(f"--{animal}-run", type=Path, help=f"folder of the training run whose {animal} to draw")
     parser.add_argument("--seed", type=int, default=1, help="seed of the episodes (default: %(default)s)")
-    parser.add_argument("--duration", type=float, default=10.0, help="of the episodes [s] (default: %(default)s)")
-    parser.add_argument("--moments", type=int, default=3, help="how many times to draw (default: %(default)s)")
+    parser.add_argument("--duration", type=float, default=10.0, help="episode duration [s] (default: %(default)s)")
+    parser.add_argument("--moments", type=int, default=3, help="number of times drawn (default: %(default)s)")
     parser.add_argument("--size", type=int, nargs=2, default=(1400, 400), help="width and height of each [pixels]")
-    parser.add_argument("--output", type=Path, default=OUTPUT, help="where to write it (default: %(default)s)")
+    parser.add_argument("--output", type=Path, default=OUTPUT, help="output file (default: %(default)s)")
     options = parser.parse_args()
     if options.moments < 1:
         parser.error(f"--moments must be at least 1, not {options.moments}")
@@ -56,7 +56,7 @@ def main() -> int:
 
 
 def policy_of(run: Path | None) -> Policy:
-    """Return the policy of a training run, or the task's scripted one where there is none."""
+    """Return the policy of a training run, or the task's scripted one if no run is given."""
     if run is None:
         return lambda observations, env: scripted_policy(env.task)(env)
     from elastica_gym.rl.policies import load_run
@@ -65,9 +65,9 @@ def policy_of(run: Path | None) -> Policy:
 
 
 def draw(rollout: Rollout, *, n_moments: int, width: int, height: int) -> np.ndarray:
-    """Draw the animal at moments evenly spread over the rollout, early ones fading, (height, width, 3) uint8.
+    """Draw the animal at evenly spaced times of the rollout, early ones faded, (height, width, 3) uint8.
 
-    Objects are where they are in the end.
+    Objects are drawn at their final positions.
     """
     rollout, last = along_x(rollout), len(rollout.step) - 1
     moments = np.linspace(0, last, n_moments).round().astype(int).tolist()
@@ -84,14 +84,14 @@ def draw(rollout: Rollout, *, n_moments: int, width: int, height: int) -> np.nda
 
 
 def overlay(picture: np.ndarray, empty: np.ndarray, drawn: np.ndarray, strength: float) -> np.ndarray:
-    """Return the picture with what was drawn on the empty stage laid over it, all (height, width, 3)."""
+    """Return the picture overlaid with the difference of ``drawn`` from ``empty``, all (height, width, 3)."""
     difference = np.abs(drawn - empty).max(axis=-1, keepdims=True)
     share = strength * np.clip(difference / 40.0, 0.0, 1.0)
     return picture + share * (drawn - picture)
 
 
 def along_x(rollout: Rollout) -> Rollout:
-    """Return a rollout whose animal and objects are turned about the vertical, so that it goes from left to right."""
+    """Return a rollout rotated about the vertical so that the animal moves from left to right."""
     centre = rollout.nodes.mean(axis=1)
     way = centre[-1] - centre[0]
     cos, sin = np.array([way[0], way[2]]) / np.hypot(way[0], way[2])

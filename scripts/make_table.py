@@ -1,9 +1,9 @@
 """Make the benchmark table: every environment with every kind of policy, each trained for the same time.
 
 ``python scripts/make_table.py`` evaluates zero, random and scripted actions, the gait that CMA-ES finds, PPO over three
-seeds, on some ids SAC over three seeds, and what is in agents/pretrained, all on the same unseen episodes. Each cell is
-a JSON file in <out>/cells, written when it is done: begun again, the command makes only what is missing. It ends with
-<out>/table.md and table.png.
+seeds, SAC over three seeds on some ids, and the policies in agents/pretrained, all on the same unseen episodes. Each
+cell is a JSON file in <out>/cells, written when done: if restarted, the command makes only missing cells. It then
+writes <out>/table.md and table.png.
 """
 
 import dataclasses
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[1]
 UNTRAINED = ("zero", "random", "scripted", "pretrained")
-"""Policies that take no training here"""
+"""Policies without training here"""
 LABELS = {
     "zero": "zero",
     "random": "random",
@@ -56,22 +56,22 @@ class Arguments:
     seeds: int = 3
     """Seeds of each learning algorithm: 0, 1, ..."""
     off_policy: tuple[str, ...] = ("SnakeForward-v1", "SnakeReach-v1", "OctopusReach-v1")
-    """Environments on which SAC is trained as well."""
+    """Environments on which SAC is also trained."""
     only: tuple[str, ...] = ()
-    """Environments and policies (zero, random, scripted, cma, ppo, sac, pretrained) to keep to; by default all."""
+    """Only these environments and policies (zero, random, scripted, cma, ppo, sac, pretrained); default all."""
     episodes: int = 100
-    """Episodes of each evaluation."""
+    """Episodes per evaluation."""
     evaluation_seed: int = TEST.start
-    """Seed of the first of them; trainings and searches use others."""
+    """Seed of the first episode; training and search use others."""
     threads: int = 2
     """Threads for the physics."""
     out: Path = Path("runs/table")
-    """Folder of the cells, the runs, the table and the plot."""
+    """Folder for cells, runs, table and plot."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Cell:
-    """One policy on one environment: one seed of it, if it learns."""
+    """One policy on one environment; for a learning algorithm, one seed of it."""
 
     env: str
     """Name without the namespace, such as SnakeForward-v1"""
@@ -90,7 +90,7 @@ class Cell:
 
 
 def cells_of(arguments: Arguments) -> list[Cell]:
-    """Return the cells, those that take no training first."""
+    """Return the cells, those without training first."""
     envs = [env_id.rpartition("/")[2] for env_id in IDS]
     for name in (*arguments.off_policy, *arguments.only):
         choose(
@@ -119,7 +119,7 @@ def pretrained() -> dict[str, str]:
 
 
 def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
-    """Train what has to be, evaluate it, and write the cell's file."""
+    """Train the policy if needed, evaluate it, and write the cell's file."""
     from elastica_gym.progress import Bar
     from elastica_gym.rl import cards
     from elastica_gym.rl.evaluation import evaluate
@@ -137,7 +137,7 @@ def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
         policy, _ = load_gait(folder / GAIT)
     else:
         policy, _ = load_run(folder)
-    # as registered, whatever arguments the environment had in training: returns are compared
+    # the registered environment, not that of training, so that returns are comparable
     with Bar(f"evaluating {cell.name}") as bar:
         result = evaluate(
             policy,
@@ -160,7 +160,7 @@ def make_cell(cell: Cell, arguments: Arguments, cells: Path) -> None:
 
 
 def train(cell: Cell, arguments: Arguments, folder: Path) -> float:
-    """Run the command that trains or searches, in a folder of its own, and return how long it took [s]."""
+    """Run the training or search command in its own folder, and return its duration [s]."""
     shutil.rmtree(folder, ignore_errors=True)
     command = [
         sys.executable,
@@ -184,12 +184,12 @@ def train(cell: Cell, arguments: Arguments, folder: Path) -> float:
     if status == 130:
         raise KeyboardInterrupt
     if status:
-        raise BadInputError(f"{' '.join(command)} ended with status {status}.")
+        raise BadInputError(f"{' '.join(command)} exited with status {status}.")
     return time.monotonic() - started
 
 
 def check_settings(arguments: Arguments, folder: Path) -> None:
-    """Make sure that all cells of a folder are made alike: refuse other settings than those it was begun with."""
+    """Raise BadInputError if the settings differ from those of the folder's other cells."""
     names = ("minutes", "episodes", "evaluation_seed", "threads")
     path, mine = folder / "settings.json", {name: getattr(arguments, name) for name in names}
     if not path.exists():
@@ -201,7 +201,7 @@ def check_settings(arguments: Arguments, folder: Path) -> None:
 
 
 def read_json(path: Path, keys: set[str]) -> dict[str, Any]:
-    """Return what a file of a table says, which must have some keys."""
+    """Return the contents of a JSON file, which must have the given keys."""
     try:
         told = json.loads(path.read_text())
     except ValueError as error:
@@ -212,7 +212,7 @@ def read_json(path: Path, keys: set[str]) -> dict[str, Any]:
 
 
 def read_cells(cells: Path) -> dict[tuple[str, str], list[dict[str, Any]]]:
-    """Return what there is of each environment and policy: one dictionary a seed."""
+    """Return the existing cells of each environment and policy, one dictionary per seed."""
     found: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for path in sorted(cells.glob("*.json")):
         cell = read_json(path, {"env", "policy", "seed", "seconds", "successes", *METRICS})
@@ -233,8 +233,8 @@ def bootstrap_interval(values: np.ndarray) -> tuple[float, float]:
     Parameters
     ----------
     values : np.ndarray
-        One row a seed of training, one column an episode, (R, N). Seeds are drawn with replacement, and within each of
-        them episodes.
+        One row per training seed, one column per episode, (R, N). Seeds are drawn with replacement, then episodes
+        within each of them.
     """
     runs, episodes = values.shape
     rng = np.random.default_rng(0)
@@ -270,7 +270,7 @@ def as_markdown(found: dict[tuple[str, str], list[dict[str, Any]]], settings: di
 
 
 def plot(found: dict[tuple[str, str], list[dict[str, Any]]]) -> "Figure":
-    """Draw the interquartile mean and its interval of each policy, a row an environment, a column a metric."""
+    """Draw the interquartile mean and interval of each policy, one row per environment, one column per metric."""
     from matplotlib.figure import Figure
 
     envs = list(dict.fromkeys(env for env, _ in found))
@@ -309,7 +309,7 @@ def main() -> None:
         print(f"[{i}/{len(missing)}] {cell.name}", flush=True)
         try:
             make_cell(cell, arguments, cells)
-        except Exception as error:  # one cell that fails must not cost a night of the others
+        except Exception as error:  # a failed cell must not stop the others
             failures.append(f"{cell.name}: {type(error).__name__}: {error}")
     write_results(arguments.out, cells)
     if failures:
@@ -317,7 +317,7 @@ def main() -> None:
 
 
 def write_results(out: Path, cells: Path) -> None:
-    """Write the table and the plot of all cells that there are."""
+    """Write the table and the plot of all existing cells."""
     from elastica_gym.rl import curves
 
     found = read_cells(cells)

@@ -1,4 +1,4 @@
-"""Show how the time of a step grows with the number of rods: 20 elements each, joined in pairs that lie on each other.
+"""Measure the time per step over the number of rods: 20 elements each, joined in pairs and stacked.
 
 ``python scripts/many_rods.py`` prints a table and writes the curve to docs/images/many_rods.png.
 """
@@ -19,18 +19,18 @@ PICTURE = ROOT / "docs" / "images" / "many_rods.png"
 COUNTS = (10, 20, 50, 100, 200, 500, 1000)
 N_ELEMENTS, LENGTH, RADIUS = 20, 0.2, 0.005
 IN_A_ROW = 2
-"""Rods that are joined end to end: whatever the number of rods, half as many joints, and nearly as many contacts"""
+"""Rods joined end to end per row: half as many joints as rods, and nearly as many contacts"""
 OVERLAP = 2e-4
-"""How deep neighbouring rows overlap [m]"""
+"""Overlap of neighbouring rows [m]"""
 TILT = 0.05
-"""Slope of the rods, up and down in turn: neighbours in a row and in a column cross [rad]"""
+"""Slope of the rods, alternately up and down, so that neighbours in a row and in a column cross [rad]"""
 DT = 1e-5
 N_STEPS, REPEATS = 200, 5
-"""Steps of a measurement, the same for all, since rods that touch part; and measurements, of which the best counts"""
+"""Steps per measurement, equal for all since touching rods separate; and measurements, of which the best counts"""
 
 
 def rows(lib: Any, n_rods: int, contact: type | None = None) -> tuple[Any, list[Any]]:
-    """Declare rods in a stack of rows: joined end to end in each, each rod crossing one of the next row.
+    """Declare a stack of rows of rods, joined end to end within a row, each crossing one of the next row.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def rows(lib: Any, n_rods: int, contact: type | None = None) -> tuple[Any, list[
     n_rods : int
         Number of rods.
     contact : type, optional
-        Class of the contact, if not ``RodRodContact`` of the library.
+        Contact class; default ``RodRodContact`` of the library.
 
     Returns
     -------
@@ -83,14 +83,14 @@ def rows(lib: Any, n_rods: int, contact: type | None = None) -> tuple[Any, list[
 
 
 def shake(rods: Sequence[Any], speed: float = 0.02) -> None:
-    """Give all nodes random velocities of a size [m/s]."""
+    """Set random node velocities of a given magnitude [m/s]."""
     rng = np.random.default_rng(0)
     for rod in rods:
         rod.velocity_collection[:] = speed * rng.standard_normal(rod.velocity_collection.shape)
 
 
 def measure(n_rods: int) -> tuple[float, float]:
-    """Return the CPU time of declaring and finalizing, and that of a step, the best of several [s]."""
+    """Return the CPU times of declaring and finalizing, and of a step, the best of several [s]."""
     sys.path.insert(0, str(ROOT))
     import elastica_gym.cosserat as lib
 
@@ -108,7 +108,7 @@ def measure(n_rods: int) -> tuple[float, float]:
 
 
 def draw(counts: Sequence[int], times: np.ndarray, path: Path) -> None:
-    """Draw the times [s], (counts, 2), beside what is proportional to the number of rods."""
+    """Draw the times [s], (counts, 2), next to linear scaling with the number of rods."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -132,17 +132,17 @@ def main() -> None:
     """Measure, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rods", type=int, nargs="+", default=COUNTS, help="numbers of rods")
-    parser.add_argument("--out", type=Path, default=PICTURE, help=f"the picture (default: {PICTURE})")
+    parser.add_argument("--out", type=Path, default=PICTURE, help=f"file of the picture (default: {PICTURE})")
     arguments = parser.parse_args()
     if min(arguments.rods) < 2:
         parser.error("--rods must be at least 2")
-    # compiled, and its files read, before anything is measured
+    # compile and load caches before measuring
     measure(4)
     times = np.array([measure(n) for n in track(arguments.rods, "measuring")])
     for n, (assembly, step) in zip(arguments.rods, times, strict=True):
         print(
-            f"{n:6d} rods: {1e6 * step:9.1f} us a step, {1e6 * step / n:.2f} us a rod; "
-            f"{assembly:.2f} s to declare and finalize, {1e3 * assembly / n:.2f} ms a rod"
+            f"{n:6d} rods: {1e6 * step:9.1f} us per step, {1e6 * step / n:.2f} us per rod; "
+            f"{assembly:.2f} s to declare and finalize, {1e3 * assembly / n:.2f} ms per rod"
         )
     draw(arguments.rods, times, arguments.out)
     print(f"the curve is in {arguments.out}")

@@ -20,16 +20,16 @@ ROOT = Path(__file__).resolve().parents[1]
 
 @dataclasses.dataclass
 class Arguments:
-    """Train a snake to crawl, and show what it has learned."""
+    """Train a snake to crawl, and show the result."""
 
     minutes: float = 5.0
-    """Time to train for."""
+    """Training time."""
     seed: int = 0
     """Seed of the training."""
     episodes: int = 20
-    """Episodes of each policy in the comparison."""
+    """Episodes per policy in the comparison."""
     evaluation_seed: int = TEST.start
-    """Seed of the first of them; training and its evaluations use others."""
+    """Seed of the first episode; training and its evaluations use others."""
     out: Path = Path("runs")
     """Folder of all runs."""
 
@@ -37,13 +37,13 @@ class Arguments:
 def main() -> None:
     """Run the command line."""
     arguments = tyro.cli(Arguments)
-    # before five minutes of training, not after
+    # check before training, not after
     check_bounds(dataclasses.asdict(arguments), {"minutes": 0.001, "seed": 0, "episodes": 1, "evaluation_seed": 0})
     console = Console()
     folder = arguments.out / ENV.split("/")[1] / f"quickstart-{arguments.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
     console.print(
         f"A snake of 50 elements learns to crawl: PPO for {arguments.minutes:g} minutes. "
-        "Ctrl-C saves and says how to go on.",
+        "Ctrl-C saves and prints how to resume.",
         highlight=False,
     )
     command = [
@@ -71,7 +71,7 @@ def main() -> None:
 
 
 def compare(console: Console, folder: Path, arguments: Arguments) -> None:
-    """Print a table of the policy that evaluated best in training and the baselines, on the same unseen seeds."""
+    """Print a table of the best policy of training and the baselines, on the same unseen seeds."""
     from elastica_gym.rl.evaluation import confidence, evaluate
     from elastica_gym.rl.policies import baseline, load_run
     from elastica_gym.rl.run_files import BEST
@@ -93,7 +93,7 @@ def compare(console: Console, folder: Path, arguments: Arguments) -> None:
 
 
 def show_where(console: Console, folder: Path) -> None:
-    """Print where the results are, and the commands that open them."""
+    """Print the paths of the results and the commands that open them."""
     curve = folder / "learning_curve.png"
     recordings = sorted((ROOT / folder).glob("recordings/*.rrd"))
     lines = [f"learning curve   {curve}"]

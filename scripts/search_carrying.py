@@ -1,8 +1,8 @@
-"""Search how the scripted octopus carries its object home: ``python scripts/search_carrying.py``.
+"""Search the gait with which the scripted octopus carries its object home: ``python scripts/search_carrying.py``.
 
-Trials begin where the script has just grabbed its object. CMA-ES varies the gait with which it hurries home
-from there, `elastica_gym.scripted.octopus_fetch.HOMEWARD`, and what counts is how soon it is home, or how near it
-comes, with the object held and upright.
+Trials start where the script has just grabbed its object. CMA-ES varies the homeward gait,
+`elastica_gym.scripted.octopus_fetch.HOMEWARD`. The score is the time to reach home, or else the final distance
+to it, with the object held and upright.
 """
 
 import dataclasses
@@ -28,20 +28,20 @@ MOST = 4096
 
 @dataclasses.dataclass
 class Arguments:
-    """Search how the scripted octopus hurries home with its object, beginning with what it does now."""
+    """Search the scripted octopus's homeward gait, starting from the current one."""
 
     generations: int = 40
     """Generations of CMA-ES."""
     population: int = 16
-    """Gaits in each."""
+    """Gaits per generation."""
     trials: int = 3
-    """Trials of each gait; all gaits of a generation have the same."""
+    """Trials per gait, the same for all gaits of a generation."""
     grabs: int = 64
-    """Octopuses that grab their object, of which trials are drawn."""
+    """Octopuses that try to grab their object; trials start from those that succeed."""
     sigma: float = 0.2
-    """Standard deviation of the first generation."""
+    """Initial standard deviation."""
     seed: int = 5000
-    """Seed of the first octopus, and of the search."""
+    """Seed of the first episode, and of the search."""
     threads: int = 2
     """Threads for the physics."""
     out: Path = Path("runs/carrying.yml")
@@ -49,7 +49,7 @@ class Arguments:
 
 
 def make(n: int, arguments: Arguments) -> Any:
-    """Make a batch of octopuses with objects anywhere."""
+    """Make a batch of octopuses with objects placed anywhere."""
     return gymnasium.make_vec(
         FETCH, num_envs=n, autoreset_mode=AutoresetMode.DISABLED, spread="anywhere", n_threads=arguments.threads
     ).unwrapped
@@ -76,11 +76,11 @@ def grabs(arguments: Arguments) -> list[Any]:
 
 
 PARTS = ("physics", "control", "episodes", "poses")
-"""What is kept of a state: all that each environment has for itself, but for generators"""
+"""Parts of a state that are kept: all per-environment data except generators"""
 
 
 def each_of(saved: dict[str, Any], i: int) -> Any:
-    """Return what environment i has of a batch's state, in the same nested form."""
+    """Return environment i's part of a batch's state, with the same nesting."""
 
     def take(part: Any) -> Any:
         if isinstance(part, dict):
@@ -91,7 +91,7 @@ def each_of(saved: dict[str, Any], i: int) -> Any:
 
 
 def together(parts: list[Any]) -> Any:
-    """Return the state of a batch, from what `each_of` returns for its environments."""
+    """Return the state of a batch from its environments' parts, see `each_of`."""
     first = parts[0]
     if isinstance(first, dict):
         return {name: together([part[name] for part in parts]) for name in first}
@@ -101,23 +101,23 @@ def together(parts: list[Any]) -> Any:
 
 
 def gait_of(values: np.ndarray) -> Gait:
-    """Return the gait with the numbers that the search varies: 27 of the table, the period, 9 of the steering."""
+    """Return the gait with the searched parameters: 27 of the table, the period, 9 of the steering."""
     table = tuple(map(tuple, values[:27].reshape(3, 9)))
     return HOMEWARD._replace(table=table, period=float(np.clip(values[27], 0.15, 1.5)), steering=tuple(values[28:]))
 
 
 def numbers_of(gait: Gait) -> np.ndarray:
-    """Return these numbers of a gait."""
+    """Return the searched parameters of a gait."""
     return np.concatenate([np.ravel(gait.table), [gait.period], gait.steering])
 
 
 def worth(batch: Any, gaits: list[Gait], begin: list[Any]) -> tuple[np.ndarray, np.ndarray]:
-    """Return what each gait is worth in each trial, and whether it comes home, (P, K) each."""
+    """Return the score of each gait in each trial, and whether it reaches home, (P, K) each."""
     batch.set_state({**batch.get_state(), **together(begin * len(gaits))})
     shape, last = (len(gaits), len(begin)), round(LONGEST / batch.control_dt)
     values, goes_on = np.zeros(batch.num_envs), np.ones(batch.num_envs, dtype=bool)
     comes_home = ~goes_on
-    # an episode that is nearly over, too, has the time of a trial
+    # episodes near their end also get the full time of a trial
     batch.elapsed[:] = np.minimum(batch.elapsed, batch.max_episode_steps - last)
     for step in range(last):
         observations, _, terminated, _, info = batch.step(actions_of(batch, gaits))
@@ -134,7 +134,7 @@ def worth(batch: Any, gaits: list[Gait], begin: list[Any]) -> tuple[np.ndarray, 
 
 
 def actions_of(batch: Any, gaits: list[Gait]) -> np.ndarray:
-    """Return the actions of octopuses that carry their objects, an equal part of them with each gait."""
+    """Return the actions of octopuses that carry their objects, an equal share with each gait."""
     sight, time = see(batch.observations), batch.elapsed * batch.control_dt
     arm = np.where(sight.ahead >= 0.0, 1, 0)
     parts = np.split(np.arange(batch.num_envs), len(gaits))
@@ -163,13 +163,13 @@ def main() -> None:
     begin = grabs(arguments)
     if len(begin) < arguments.trials:
         raise BadInputError(
-            f"trials must be at most the octopuses that have grabbed their object, {len(begin)} of "
-            f"{arguments.grabs}, got {arguments.trials}: ask for more grabs"
+            f"trials must be at most the number of successful grabs, {len(begin)} of "
+            f"{arguments.grabs}, got {arguments.trials}: increase grabs"
         )
     batch = make(arguments.population * arguments.trials, arguments)
     batch.reset(seed=arguments.seed)
     rng, start = np.random.default_rng(arguments.seed), numbers_of(HOMEWARD)
-    # the period is a tenth of what the rest is
+    # the period varies less than the other parameters
     spread = np.where(np.arange(len(start)) == 27, 0.05, 1.0)
     strategy = strategy_about(start, arguments.sigma * spread, arguments.population, arguments.seed)
     homes: list[float] = []
@@ -188,7 +188,7 @@ def main() -> None:
     table = [np.round(row, 2).tolist() for row in found.table]
     text = {"period": round(found.period, 3), "table": table, "steering": np.round(found.steering, 2).tolist()}
     arguments.out.write_text(yaml.safe_dump(text, sort_keys=False))
-    print(f"wrote {arguments.out}: the middle of the last generation's distribution")
+    print(f"wrote {arguments.out}: the mean of the last generation's distribution")
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
-"""The starter kit: a policy to begin with, and what can be done with one.
+"""The starter kit: a first policy, and a tour of the tools for it.
 
 The policy below is complete: ``python scripts/score.py --policy scripts/starter_kit.py`` scores it. Copy the
-file and change it. ``bash scripts/starter_kit.sh`` installs and goes through everything else, as the notebook beside
-it does: it draws what activations do, records and films the policy, trains networks that ship with the repository for
-another minute, and scores both.
+file and change it. ``bash scripts/starter_kit.sh`` installs and runs the rest, as the notebook next to it does: it
+draws the effect of activations, records and films the policy, trains networks shipped with the repository for another
+minute, and scores both.
 """
 
 import dataclasses
@@ -15,17 +15,17 @@ from typing import Any
 
 import numpy as np
 
-# memory: the file is run afresh for every episode
+# memory: the file is run again for every episode
 steps = 0
 
 PERIOD = 0.37
-"""Of a stroke [s]"""
+"""Period of a stroke [s]"""
 CONTROL_DT = 0.05
-"""From one action to the next [s]"""
+"""Time between actions [s]"""
 SEEN_FORWARD, SEEN_RIGHT = 206, 207
-"""Where an observation has the direction from the head to the object"""
+"""Indices in the observation of the direction from the head to the object"""
 FUNCTIONS = np.array([0, 1, 2, 14, 15, 16])
-"""Activations of the first arm: the three lowest functions that bend it sideways, and that lift it"""
+"""Activations of the first arm: the three lowest functions that bend it sideways, and the three that lift it"""
 OFFSET = np.array([1.02, 1.57, 0.53, -0.74, -1.52, 0.51])
 SINE = np.array([1.4, -0.19, -0.7, 0.29, -0.95, 0.08])
 COSINE = np.array([-0.71, 0.46, -0.43, 1.71, -1.63, 1.62])
@@ -33,7 +33,7 @@ COSINE = np.array([-0.71, 0.46, -0.43, 1.71, -1.63, 1.62])
 
 
 def policy(observation: np.ndarray) -> np.ndarray:
-    """Walk to the right, and turn to keep the object there: both arms row, one of them less where it is off course.
+    """Walk to the right, and turn to keep the object there: both arms row, and one rows less to correct the course.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def policy(observation: np.ndarray) -> np.ndarray:
     stroke = np.clip(OFFSET + SINE * np.sin(phase) + COSINE * np.cos(phase), -1.0, 1.0)
     ahead = np.arctan2(observation[SEEN_FORWARD], observation[SEEN_RIGHT])
     action = np.zeros(42)
-    # the second arm is ahead of the head, and the first one behind it
+    # the second arm is in front of the head, the first one behind it
     action[FUNCTIONS] = stroke * np.clip(1.0 + ahead, 0.0, 1.0)
     action[FUNCTIONS + 7] = stroke * np.clip(1.0 - ahead, 0.0, 1.0)
     return action
@@ -63,22 +63,22 @@ ROOT = Path(__file__).resolve().parents[1]
 
 @dataclasses.dataclass
 class Arguments:
-    """Go through the starter kit."""
+    """Run the starter kit."""
 
     env: str = "elastica_gym/OctopusFetch-v1"
     """Environment id."""
     spread: str = "default"
-    """Where the object stands in the recording: default, arc or anywhere."""
+    """Position of the object in the recording: default, arc or anywhere."""
     start_from: str = "octopus_fetch_dagger"
-    """Pretrained policy from whose networks training starts: from new ones, minutes are not worth a point."""
+    """Pretrained policy whose networks initialise training; new ones score nothing within minutes."""
     imitate: int = 12_800
-    """Environment steps in which they go on to imitate the task's script; about a minute on two cores."""
+    """Environment steps of further imitation of the task's script; about a minute on two cores."""
     targets: int = 5
-    """Targets of the score on the arc, and again anywhere."""
+    """Number of targets on the arc in the score, and also of those anywhere."""
     seconds: float = 8.0
     """Simulated time of the video [s]."""
     out: Path = Path("runs/starter_kit")
-    """Folder of all that is written."""
+    """Output folder."""
 
 
 def main() -> None:
@@ -96,7 +96,7 @@ def main() -> None:
     run(ROOT / "scripts" / "draw_activations.py", "--output", out / "activations.png")
     show(arguments, out)
     trained = out / "trained"
-    # what an earlier tour has trained
+    # results of an earlier run
     shutil.rmtree(trained, ignore_errors=True)
     run(
         "-m",
@@ -133,7 +133,7 @@ def main() -> None:
 
 
 def show(arguments: Arguments, out: Path) -> None:
-    """Record an episode of the policy for rerun, and make a video of its beginning."""
+    """Record an episode of the policy for rerun, and make a video of its start."""
     from elastica_gym.viz import render_frames, run_rollout, write_recording, write_video
 
     def act(observations: np.ndarray, batch: Any) -> np.ndarray:
@@ -146,7 +146,7 @@ def show(arguments: Arguments, out: Path) -> None:
 
 
 def run(*command: Any) -> None:
-    """Run a command of the repository, and leave with its status if that is not 0."""
+    """Run a command of the repository, and exit with its status unless it is 0."""
     print(f"$ {' '.join(['python', *map(str, command)])}", flush=True)
     status = subprocess.run([sys.executable, *map(str, command)], cwd=ROOT).returncode
     if status != 0:

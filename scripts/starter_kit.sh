@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a bare clone to a scored policy in ten minutes: installs, and goes through the starter kit.
+# From a fresh clone to a scored policy in ten minutes: installs and runs the starter kit.
 # Arguments go to scripts/starter_kit.py (--help).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

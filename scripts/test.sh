@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what tests need and runs all that are fast; --slow runs the slow ones too. Other arguments go to pytest.
+# Installs the test dependencies and runs the fast tests; --slow runs all tests. Other arguments go to pytest.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/environment.sh

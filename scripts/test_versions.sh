@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Tries the lowest or the newest versions that pyproject.toml allows, in an environment in a temporary folder:
+# Tests the lowest or the newest versions that pyproject.toml allows, in a temporary environment:
 #   bash scripts/test_versions.sh lowest
 #   bash scripts/test_versions.sh newest 3.12 3.13
-# Without Pythons, 3.11, 3.12 and 3.13; one that is not on this machine is skipped. Takes minutes for each.
+# Pythons default to 3.11, 3.12 and 3.13; missing ones are skipped. Takes minutes per Python.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 which=${1:-}
@@ -13,7 +13,7 @@ fi
 shift
 [ $# -gt 0 ] || set -- 3.11 3.12 3.13
 
-# a representative part: what is compiled, its errors and bodies, and the environments of the snake
+# a representative selection: compiled code, errors, bodies, and the snake's environments
 tests=(tests/test_import.py tests/test_versions.py tests/engine/test_compiler.py tests/engine/test_errors.py
        tests/engine/test_bodies.py tests/envs/test_episodes.py)
 
@@ -30,7 +30,7 @@ find_python() {
     done
 }
 
-# numpy>=2.0 as numpy==2.0.*, if the lowest are tried; a NumPy that has no wheel for a newer Python gives way to one
+# pins numpy>=2.0 as numpy==2.0.* for the lowest versions; if a version has no wheel for a Python, the first with one
 constraints() {
     "$1" - "$which" "$2" <<'PY'
 import re, sys, tomllib
@@ -48,7 +48,7 @@ failed=()
 for version in "$@"; do
     python=$(find_python "$version")
     if [ -z "$python" ]; then
-        echo "== Python $version: skipped, it is not on this machine"
+        echo "== Python $version: skipped, not installed"
         continue
     fi
     echo "== Python $version with the $which versions"

@@ -59,7 +59,7 @@ def check_recording(path: Path) -> None:
         raise BadInputError(f"cannot read {path}: {error.strerror}") from error
     if begin != MAGIC:
         raise BadInputError(f"{path} is not a rerun recording")
-    # in a process of its own, since some damage makes the reader abort
+    # in a subprocess, since some damaged files make the reader abort
     command = [*viewer_program(), "rrd", "verify", str(path)]
     verdict = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True)
     if verdict.returncode != 0:
@@ -95,7 +95,7 @@ def has_display() -> bool:
 
 
 def require_free(name: str, port: int) -> None:
-    """Raise a BadInputError if a port cannot be used."""
+    """Raise a BadInputError if a port is not available."""
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -105,15 +105,14 @@ def require_free(name: str, port: int) -> None:
 
 
 def run_viewer(arguments: list[str]) -> int:
-    """Run rerun's program until it ends, or Ctrl-C or another signal ends it.
+    """Run rerun's program until it exits or a signal such as Ctrl-C stops it.
 
-    From before it starts, signals only set a flag: an exception could arise while the viewer is being started, and
-    leave it behind.
+    Signals only set a flag, from before the start: an exception during the start could leave the viewer behind.
     """
     interrupted = threading.Event()
     for name in {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal)):
         signal.signal(getattr(signal, name), lambda *_: interrupted.set())
-    # a session of its own: Ctrl-C reaches this script only, which then stops the viewer
+    # a new session: Ctrl-C reaches only this script, which then stops the viewer
     viewer = subprocess.Popen([*viewer_program(), *arguments], env=ENVIRONMENT, start_new_session=True)
     while viewer.poll() is None and not interrupted.wait(timeout=0.2):
         pass
@@ -130,7 +129,7 @@ def run_viewer(arguments: list[str]) -> int:
 
 
 def viewer_program() -> list[str]:
-    """Return the command that runs rerun's program, of the rerun that this Python has."""
+    """Return the command that runs the program of this Python's rerun."""
     spec = importlib.util.find_spec("rerun_cli")
     if spec is None or spec.origin is None:
         raise BadInputError("recordings need rerun: pip install 'elastica-gym[viz]'")

@@ -13,21 +13,21 @@ from . import parse
 class ScoreArguments:
     """Score a policy on the hackathon's six goals, out of 100 points.
 
-    What counts is where animal and object are, every 10 ms or finer. The policy runs in a process of its own and sees
-    nothing but observations.
+    Points depend on the positions of animal and object, sampled every 10 ms or finer. The policy runs in a separate
+    process and receives only observations.
     """
 
     policy: Path
-    """A Python file with a function policy(observation), the folder of a run, its model.zip, or the zip of a pretrained
-    policy."""
+    """A Python file with a function policy(observation), the folder of a run, its model.zip, or a pretrained policy's
+    zip."""
     targets: int = 100
-    """Targets on the arc, and again anywhere."""
+    """Number of targets on the arc, and also of those anywhere."""
     target_seed: int = 2020
     """Seed of all targets and initial states."""
     json: Path | None = None
-    """File for the points as JSON, and what they were computed with."""
+    """File for the points and the settings as JSON."""
     record: Path | None = None
-    """Folder for rerun recordings: of the first episode on each kind of target."""
+    """Folder for rerun recordings of the first episode on each kind of target."""
     env: str = "elastica_gym/OctopusFetch-v1"
     """Environment id."""
     threads: int = 2

@@ -1,4 +1,4 @@
-"""A rod pulled at its end oscillates along its axis and comes to rest where its tension holds the force."""
+"""A rod pulled at its end oscillates along its axis and comes to rest where tension balances the force."""
 
 import numpy as np
 from case import Result, show
@@ -20,23 +20,23 @@ LENGTH, RADIUS, MODULUS, FORCE = 1.0, 0.025, 1e4, 1.0
 
 
 class Simulator(BaseSystemCollection, Constraints, Forcing, CallBacks):
-    """A rod, a clamp, a force, and a look at its end."""
+    """A rod, a clamp, a force and a callback."""
 
 
 class TipCallBack(CallBackBaseClass):
-    """Notes where the last node is."""
+    """Records the position of the last node."""
 
     def __init__(self, every: int, times: list, tips: list) -> None:
         self.every, self.times, self.tips = every, times, tips
 
     def make_callback(self, system: CosseratRod, time: float, current_step: int) -> None:
-        """Append time and place."""
+        """Append time and position."""
         self.times.append(time)
         self.tips.append(system.position_collection[0, -1])
 
 
 def measure() -> Result:
-    """Return the end's way over time; theory is where it must come to rest."""
+    """Return the end's displacement over time; theory is its rest position."""
     simulator = Simulator()
     rod = CosseratRod.straight_rod(
         19,
@@ -47,7 +47,7 @@ def measure() -> Result:
         RADIUS,
         1000.0,
         nu=2.0,
-        # such a torque per spin would be unstable at this step, if anything turned
+        # nothing rotates: torque damping of this size would be unstable at this step
         nu_for_torques=0.0,
         youngs_modulus=MODULUS,
     )
@@ -66,7 +66,7 @@ def measure() -> Result:
     return Result(
         "Axial stretching",
         "time [s]",
-        "way of the end [m]",
+        "displacement of the end [m]",
         np.array(times),
         way,
         np.array([0.0, 20.0]),

@@ -1,9 +1,9 @@
-"""A rod that is straight at rest, let go with a kink in its middle, flaps like two wings and keeps its energy.
+"""A rod straight at rest, released with a kink in its middle, flaps like two wings and conserves energy.
 
-The published rod is as thick as a third of its elements' length and stretches by a tenth; there the documented model
-does not keep its energy, whatever the time step. Its couples go with 1/E^3 of the dilatation at a joint, its forces
-with 1/e and its spin with J/e, without the tension that these changes call for. The load `ReciprocalTension` adds it. A
-slender rod hardly stretches, and the documented model keeps its energy.
+The radius of the published rod is a third of its element length and it stretches by a tenth; the documented model does
+not conserve its energy at any time step. Its couples scale with 1/E^3 of the dilatation at a joint, its forces with 1/e
+and its spin with J/e, without the tension that these changes require. The load `ReciprocalTension` adds it. A slender
+rod hardly stretches, and the documented model conserves its energy.
 """
 
 import numpy as np
@@ -25,15 +25,15 @@ N, LENGTH, DENSITY, YOUNG = 4, 3.0, 5000.0, 1e4
 PUBLISHED, SLENDER = 0.25, 0.025
 """Radii [m]"""
 DURATION = 5.0
-"""How long a rod of a radius of 1 m would fly, and another over its radius [s]"""
+"""Duration for a radius of 1 m; inversely proportional to the radius [s]"""
 
 
 class Simulator(BaseSystemCollection, Forcing, CallBacks):
-    """A rod, the tension if it is wanted, and a look at energies."""
+    """A rod, optional tension and a callback."""
 
 
 class EnergyCallBack(CallBackBaseClass):
-    """Notes energies of translation, rotation, shear and bending: as documented, or those of the potential."""
+    """Records energies of translation, rotation, shear and bending: documented ones, or those of the potential."""
 
     def __init__(self, every: int, is_reciprocal: bool, times: list, energies: list) -> None:
         self.every, self.is_reciprocal, self.times, self.energies = every, is_reciprocal, times, energies
@@ -53,7 +53,7 @@ class EnergyCallBack(CallBackBaseClass):
 
 
 def fly(radius: float, part: float = 0.2, is_reciprocal: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """Return times [s], (m,), and energies [J], (m, 4), of a flight in steps of a part of what is stable."""
+    """Return times [s], (m,), and energies [J], (m, 4), of a flight with a fraction of the stable step."""
     half = np.arange(N + 1.0) - N // 2
     nodes = LENGTH / N / np.sqrt(2.0) * np.array([N // 2 - abs(half), 0.0 * half, half + N // 2])
     rod = CosseratRod.straight_rod(
@@ -82,13 +82,13 @@ def fly(radius: float, part: float = 0.2, is_reciprocal: bool = False) -> tuple[
 
 
 def drift(energies: np.ndarray) -> float:
-    """Return the largest relative change of the whole energy."""
+    """Return the largest relative change of the total energy."""
     whole = energies.sum(axis=1)
     return float(np.abs(whole / whole[0] - 1.0).max())
 
 
 def measure() -> Result:
-    """Return energies of a slender rod over time; theory is that their sum stays."""
+    """Return energies of a slender rod over time; in theory their sum is constant."""
     times, energies = fly(SLENDER)
     sums = np.stack([energies[:, :2].sum(axis=1), energies[:, 2:].sum(axis=1), energies.sum(axis=1)], axis=1)
     return Result(

@@ -1,4 +1,4 @@
-"""A cantilever that is let go swings with the frequency of its first mode, 1.8751^2/(2 pi) sqrt(Y I/(rho A L^4))."""
+"""A released cantilever oscillates at the frequency of its first mode, 1.8751^2/(2 pi) sqrt(Y I/(rho A L^4))."""
 
 import numpy as np
 from case import Result, show
@@ -20,11 +20,11 @@ MODE = 1.8751040687119611
 
 
 class Simulator(BaseSystemCollection, Constraints, CallBacks):
-    """A rod, a clamp, and a look at its end."""
+    """A rod, a clamp and a callback."""
 
 
 class TipCallBack(CallBackBaseClass):
-    """Notes how far the last node is from the axis."""
+    """Records the distance of the last node from the axis."""
 
     def __init__(self, every: int, times: list, tips: list) -> None:
         self.every, self.times, self.tips = every, times, tips
@@ -36,13 +36,13 @@ class TipCallBack(CallBackBaseClass):
 
 
 def frequency(n: int) -> float:
-    """Return the frequency in theory of a rod whose first half element is held [Hz]."""
+    """Return the theoretical frequency of a rod whose first half element is held [Hz]."""
     free = LENGTH * (1.0 - 0.5 / n)
     return MODE**2 / (2.0 * np.pi) * np.sqrt(YOUNG * RADIUS**2 / (4.0 * DENSITY)) / free**2
 
 
 def measure() -> Result:
-    """Return the end's swing over time; theory is a sine of the first mode's frequency."""
+    """Return the end's deflection over time; theory is a sine at the first mode's frequency."""
     n = 40
     simulator = Simulator()
     rod = CosseratRod.straight_rod(
@@ -78,7 +78,7 @@ def measure() -> Result:
     return Result(
         f"First mode of a cantilever: {found:.4f} Hz, theory {expected:.4f} Hz",
         "time [s]",
-        "way of the end [m]",
+        "deflection of the end [m]",
         t,
         y,
         fine,

@@ -1,4 +1,4 @@
-"""What the cases share: a result with what theory says, and a picture of both."""
+"""Shared parts of the cases: a result with its theory, and a picture of both."""
 
 import argparse
 from collections.abc import Callable
@@ -10,26 +10,26 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Result:
-    """What was measured, beside what theory says.
+    """A measurement and its theory.
 
     Attributes
     ----------
     title, x_label, y_label : str
-        Texts of the picture.
+        Title and axis labels of the picture.
     x, measured : np.ndarray
-        Points, (n,); of several curves, (n,) and (n, c).
+        Measured points, (n,); for several curves, (n,) and (n, c).
     exact_x, exact : np.ndarray
-        The curve of theory, (m,); several, (m,) and (m, c).
+        Theoretical curve, (m,); for several, (m,) and (m, c).
     error : float
-        The figure that is compared.
+        Error of the measurement.
     bound : float
-        What it must stay below.
+        Upper bound of the error.
     labels : tuple of str
-        What is measured, one text for each curve.
+        Labels of the measured curves.
     reference : str
-        What it is compared with.
+        Label of the theory.
     scale : str
-        Of both axes of the picture, "linear" or "log".
+        Scale of both axes of the picture, "linear" or "log".
     """
 
     title: str

@@ -1,7 +1,7 @@
-"""A rod that hangs from its ends, too slender to resist bending, comes to rest in a catenary (Leibniz, Huygens, 1691).
+"""A slender rod that hangs from its ends comes to rest in a catenary (Leibniz, Huygens, 1691).
 
-y = a cosh(x/a), with the parameter a that fits length and span. What bending there is keeps it from that where the
-catenary is most curved: a rod twice as thick is three times as far from it.
+y = a cosh(x/a), with a from length and span. The remaining bending stiffness causes a deviation where the catenary is
+most curved: a rod twice as thick deviates three times as much.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ from elastica_gym.cosserat import (
 
 LENGTH, SPAN, DENSITY, YOUNG, G = 1.0, 0.6, 1000.0, 1e7, 9.81
 REST = 10.0
-"""Time in which damping brings the rod to rest [s]"""
+"""Time for damping to bring the rod to rest [s]"""
 
 
 class Simulator(BaseSystemCollection, Constraints, Forcing, Damping):
@@ -32,7 +32,7 @@ class Simulator(BaseSystemCollection, Constraints, Forcing, Damping):
 
 
 def hung(n: int, radius: float) -> np.ndarray:
-    """Return the nodes of a rod at rest that hangs from its ends, and started as a V [m], (2, n + 1)."""
+    """Return the nodes at rest of a rod that hangs from its ends and started as a V [m], (2, n + 1)."""
     along = np.linspace(-0.5, 0.5, n + 1)
     depth = np.sqrt(LENGTH**2 - SPAN**2)
     nodes = np.array([SPAN * along, depth * (np.abs(along) - 0.5), 0.0 * along])
@@ -65,7 +65,7 @@ def exact(x: np.ndarray) -> np.ndarray:
 
 
 def measure() -> Result:
-    """Return the height over the place, and how far it is from a catenary's, over its sag."""
+    """Return the height over position, and its deviation from a catenary relative to the sag."""
     (x, y), fine = hung(50, 5e-4), np.linspace(-0.5 * SPAN, 0.5 * SPAN, 200)
     error = float(np.abs(y - exact(x)).max() / -exact(np.zeros(1))[0])
     return Result("Catenary", "x [m]", "y [m]", x, y, fine, exact(fine), error, 3e-3)

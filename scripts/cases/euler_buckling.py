@@ -1,4 +1,4 @@
-"""A cantilever pressed along its axis swings ever more slowly, and buckles at pi^2 Y I/(4 L^2) (Euler 1744)."""
+"""The frequency of a cantilever falls with axial compression, and it buckles at pi^2 Y I/(4 L^2) (Euler 1744)."""
 
 import numpy as np
 from cantilever_frequency import DENSITY, LENGTH, RADIUS, YOUNG, TipCallBack, frequency
@@ -19,13 +19,13 @@ from elastica_gym.cosserat import (
 
 N = 20
 FREE = LENGTH * (1.0 - 0.5 / N)
-"""Length that bends, without the half element that is held [m]"""
+"""Free length, without the held half element [m]"""
 THRESHOLD = np.pi**2 * YOUNG * np.pi * RADIUS**4 / 4.0 / (4.0 * FREE**2)
-"""Force of buckling in theory [N]"""
+"""Theoretical buckling force [N]"""
 
 
 class Simulator(BaseSystemCollection, Constraints, Forcing, CallBacks):
-    """A rod, a clamp, a force, and a look at its end."""
+    """A rod, a clamp, a force and a callback."""
 
 
 def swing(force: float) -> float:
@@ -63,9 +63,9 @@ def swing(force: float) -> float:
 
 
 def measure() -> Result:
-    """Return the squared frequency over the force; where it meets zero, the rod buckles.
+    """Return the squared frequency over the force; the rod buckles where it is zero.
 
-    It falls almost, but not quite, in a straight line.
+    It decreases almost linearly.
     """
     forces = THRESHOLD * np.array([0.0, 0.2, 0.4, 0.6])
     squared = np.array([swing(force) for force in forces]) ** 2

@@ -1,8 +1,8 @@
 """A twisted rod whose ends approach each other buckles into a helix in its middle (Gazzola et al. 2018, section 3.4.1).
 
-The slope of its tangent to its axis is that of a localised solution of Kirchhoff's equations (Neukirch, van der
-Heijden and Thompson 2002, eqs. 12-15). The published rod, but with a larger inertia, a softer shear and more damping,
-none of which matters at rest.
+The angle between tangent and axis is that of a localised solution of Kirchhoff's equations (Neukirch, van der
+Heijden and Thompson 2002, eqs. 12-15). The published rod, but with larger inertia, lower shear stiffness and more
+damping, which do not matter at rest.
 """
 
 import numpy as np
@@ -23,11 +23,11 @@ LENGTH, RADIUS, SLACK, TURNS = 100.0, 0.7, 3.0, 27.0
 BENDING, TWISTING, SHEAR = 1.345, 0.789, 1e4
 """Stiffness of bending and of twist [N m^2], and of shear and stretch [N]"""
 TWISTING_TIME, REST = 200.0, 1500.0
-"""Until when the ends move, and when the rod has come to rest [s]"""
+"""Time until which the ends move, and time at which the rod is at rest [s]"""
 
 
 class Simulator(BaseSystemCollection, Constraints):
-    """A rod whose ends are turned and pushed."""
+    """A rod with twisted and displaced ends."""
 
 
 def slopes(n: int) -> np.ndarray:
@@ -45,7 +45,7 @@ def slopes(n: int) -> np.ndarray:
     )
     rod.shear_matrix = np.repeat(SHEAR * np.eye(3)[:, :, None], n, axis=2)
     rod.bend_matrix = np.repeat(np.diag([BENDING, BENDING, TWISTING])[:, :, None], n - 1, axis=2)
-    # a push that makes it buckle in the middle, and not where rounding says
+    # perturbation, so that it buckles in the middle rather than where rounding decides
     rod.velocity_collection[1] = 1e-3 / np.cosh((rod.position_collection[2] - 0.5 * LENGTH) / 5.0)
     simulator = Simulator()
     simulator.append(rod)
@@ -63,12 +63,12 @@ def slopes(n: int) -> np.ndarray:
 
 
 def free_length(n: int) -> float:
-    """Return the length that bends and twists: half an element at each end is held [m]."""
+    """Return the free length: half an element at each end is held [m]."""
     return LENGTH * (1.0 - 1.0 / n)
 
 
 def load(n: int) -> tuple[float, float]:
-    """Return the moment M L/B and the tension T L^2/B at the ends, by theory (eqs. 14 and 15)."""
+    """Return the theoretical moment M L/B and tension T L^2/B at the ends (eqs. 14 and 15)."""
     slack, angle, ratio = SLACK / free_length(n), 2.0 * np.pi * TURNS, TWISTING / BENDING
 
     def misfit(unknown: np.ndarray) -> list[float]:
@@ -83,7 +83,7 @@ def load(n: int) -> tuple[float, float]:
 
 
 def exact(n: int, z: np.ndarray) -> np.ndarray:
-    """Return the slopes at places along the rod [m] by theory (eqs. 12 and 13) [rad]."""
+    """Return the theoretical slopes [rad] at positions along the rod [m] (eqs. 12 and 13)."""
     moment, tension = load(n)
     steepest = 2.0 - moment**2 / (2.0 * tension)
     s = z / free_length(n) - 0.5 * LENGTH / free_length(n)
@@ -91,12 +91,12 @@ def exact(n: int, z: np.ndarray) -> np.ndarray:
 
 
 def centres(n: int) -> np.ndarray:
-    """Return where elements are along the rod at rest [m], (n,)."""
+    """Return the positions of elements along the rod at rest [m], (n,)."""
     return LENGTH * (np.arange(n) + 0.5) / n
 
 
 def error(n: int, found: np.ndarray) -> float:
-    """Return the root mean square of the difference from theory, over that of theory."""
+    """Return the root mean square deviation from theory, relative to that of theory."""
     expected = exact(n, centres(n))
     return float(np.linalg.norm(found - expected) / np.linalg.norm(expected))
 
@@ -107,7 +107,7 @@ def measure() -> Result:
     found, fine = slopes(n), np.linspace(0.0, LENGTH, 1000)
     return Result(
         "Helical buckling",
-        "along the rod [m]",
+        "position along the rod [m]",
         "angle to the axis [rad]",
         centres(n),
         found,

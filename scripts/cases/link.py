@@ -1,4 +1,4 @@
-"""Twist and writhe of a coil add up to its link (Klenin and Langowski 2000), while each of them changes."""
+"""Twist and writhe of a coil change, but add up to its link (Klenin and Langowski 2000)."""
 
 import numpy as np
 from case import Result, show
@@ -10,7 +10,7 @@ TURNS = 4
 
 
 def coil(height: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return nodes, (3, n + 1), and normals, (3, n), of a coil on the unit cylinder that is wound without twist."""
+    """Return nodes, (3, n + 1), and normals, (3, n), of a coil on the unit cylinder, wound without twist."""
     angle = np.linspace(0.0, 2.0 * np.pi * TURNS, NODES)
     nodes = np.array([np.cos(angle), np.sin(angle), height * angle / (2.0 * np.pi)])
     tangents = np.diff(nodes, axis=1)
@@ -21,7 +21,7 @@ def coil(height: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def measure() -> Result:
-    """Return twist over the height of a turn; theory is link less writhe."""
+    """Return twist over the height of a turn; theory is link minus writhe."""
     heights = np.linspace(0.3, 3.0, 10)
     curves = [coil(height) for height in heights]
     lines, normals = np.array([nodes for nodes, _ in curves]), np.array([d1 for _, d1 in curves])
@@ -30,7 +30,7 @@ def measure() -> Result:
     link = compute_link(lines, normals, np.full((heights.size, NODES - 1), 1e-3), 1000.0, "next_tangent")
     error = float(np.abs(twist + writhe - link).max())
     return Result(
-        "Twist of a coil, and its link less its writhe",
+        "Twist of a coil, and its link minus its writhe",
         "height of a turn",
         "turns",
         heights,

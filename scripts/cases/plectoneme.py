@@ -1,4 +1,4 @@
-"""A rod that is twisted far past buckling winds about itself; twist and writhe add up to the turns of its ends.
+"""A rod twisted far beyond buckling coils around itself; twist and writhe add up to the turns of its ends.
 
 Self contact keeps it from passing through itself, which would change the sum by two. Twist, writhe and link are those
 of Klenin and Langowski (2000).
@@ -26,15 +26,15 @@ from elastica_gym.cosserat import (
 
 N, LENGTH, RADIUS, DENSITY, YOUNG, SLACK, TURNS = 100, 1.0, 0.0125, 1000.0, 1e6, 0.6, 6.0
 TWISTING_TIME, DURATION, DAMPING = 5.0, 6.0, 3.0
-"""Until when the ends turn, how long all lasts [s], and how fast motion decays [1/s]"""
+"""Time until which the ends turn, total duration [s], and decay rate of motion [1/s]"""
 
 
 class Simulator(BaseSystemCollection, Constraints, Contact, CallBacks):
-    """A rod that touches itself, whose ends are turned, and a look at it."""
+    """A rod with self contact and turned ends, and a callback."""
 
 
 class CurveCallBack(CallBackBaseClass):
-    """Notes time, nodes, normals and radii."""
+    """Records time, nodes, normals and radii."""
 
     def __init__(self, every: int, seen: list) -> None:
         self.every, self.seen = every, seen
@@ -82,7 +82,7 @@ def wind() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
 
 
 def measure() -> Result:
-    """Return twist, writhe and link over time; theory is that their sum, the link, is the turns of the ends."""
+    """Return twist, writhe and link over time; in theory their sum, the link, equals the turns of the ends."""
     times, nodes, normals, radii = wind()
     imposed = -TURNS * np.minimum(1.0, times / TWISTING_TIME)
     twist, _ = compute_twist(nodes, normals)

@@ -1,15 +1,15 @@
-"""A rod rolls down an incline up to a slope of 3 mu_s, and slips down a steeper one (Gazzola et al. 2018, app. D)."""
+"""A rod rolls down an incline up to a slope of 3 mu_s, and slips on a steeper one (Gazzola et al. 2018, app. D)."""
 
 import numpy as np
 from axial_friction import ACROSS, DURATION, KINETIC, MASS, RADIUS, STATIC, UP, G, energies, resting
 from case import Result, show
 
 THRESHOLD = np.arctan(3.0 * STATIC)
-"""Angle above which the rod slips in theory [rad]"""
+"""Theoretical angle above which the rod slips [rad]"""
 
 
 def exact(angle: np.ndarray) -> np.ndarray:
-    """Return the energies of translation and of rotation by theory [J], (n, 2)."""
+    """Return the theoretical energies of translation and rotation [J], (n, 2)."""
     pull, inertia = MASS * G * np.sin(angle), 0.5 * MASS * RADIUS**2
     friction = np.where(angle > THRESHOLD, KINETIC * MASS * G * np.cos(angle), pull / 3.0)
     speed, spin = (pull - friction) / MASS * DURATION, friction * RADIUS / inertia * DURATION
@@ -17,7 +17,7 @@ def exact(angle: np.ndarray) -> np.ndarray:
 
 
 def measure() -> Result:
-    """Return energies over the angle: those of rolling, and then of slipping."""
+    """Return energies over the angle: rolling, then slipping."""
     angles, fine = np.array([0.1, 0.4, 0.8, 0.99, 1.01, 1.2]) * THRESHOLD, np.linspace(0.0, 1.2 * THRESHOLD, 1000)
     found = np.array(
         [energies(resting(), gravity=G * (np.sin(angle) * ACROSS - np.cos(angle) * UP)) for angle in angles]

@@ -1,6 +1,6 @@
-"""A rod thrown sideways onto a plane slips until it rolls, whatever the coefficient (Gazzola et al. 2018, app. D).
+"""A rod thrown sideways onto a plane slips until it rolls, at any coefficient (Gazzola et al. 2018, app. D).
 
-Friction takes from the speed what it gives to the spin, until both fit: v = v0/(1 + J/(m r^2)).
+Friction slows translation and speeds up rotation until the rod rolls: v = v0/(1 + J/(m r^2)).
 """
 
 import numpy as np
@@ -8,7 +8,7 @@ from axial_friction import ACROSS, MASS, energies, resting
 from case import Result, show
 
 SPEED = 1.0
-"""At which the rod is thrown [m/s]"""
+"""Initial speed of the rod [m/s]"""
 
 
 def thrown(factor: float) -> tuple[float, float]:
@@ -21,13 +21,13 @@ def thrown(factor: float) -> tuple[float, float]:
 
 
 def exact(factor: np.ndarray) -> np.ndarray:
-    """Return the energies of translation and of rotation by theory [J], (n, 2)."""
+    """Return the theoretical energies of translation and rotation [J], (n, 2)."""
     speed = SPEED / (1.0 + 0.5 * factor)
     return np.stack([0.5 * MASS * speed**2, 0.25 * MASS * factor * speed**2], axis=-1)
 
 
 def measure() -> Result:
-    """Return the energies of rolling over the moment of inertia."""
+    """Return the rolling energies over the moment of inertia."""
     factors, fine = np.array([0.25, 0.5, 1.0, 1.5, 2.0]), np.linspace(0.25, 2.0, 100)
     found = np.array([thrown(factor) for factor in factors])
     error = np.abs(found / exact(factors) - 1.0).max()

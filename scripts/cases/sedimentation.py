@@ -1,4 +1,4 @@
-"""A slender rod pulled through a viscous fluid: the speed at which drag holds the force, lengthwise and across."""
+"""A slender rod pulled through a viscous fluid: the speed at which drag balances the force, lengthwise and across."""
 
 import numpy as np
 from case import Result, show

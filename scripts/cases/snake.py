@@ -1,6 +1,6 @@
 """The continuum snake crawls as fast as in PyElastica 0.2.2 (Gazzola et al. 2018, section 5.2; Zhang et al. 2021).
 
-A wave of muscle couple, on ground that resists sideways twice and backward one and a half times as much as forward.
+A wave of muscle couples, on ground with twice the forward friction sideways and one and a half times it backward.
 """
 
 import numpy as np
@@ -23,29 +23,29 @@ LENGTH, RADIUS, PERIOD, G, FROUDE = 0.35, 0.011 * 0.35, 2.0, 9.80665, 0.1
 WAVE = (3.4e-3, 3.3e-3, 4.2e-3, 2.6e-3, 3.6e-3, 3.5e-3)
 """Control coefficients of the couple along the snake [N m]"""
 START, DURATION, TIME_STEP = 2.0 * PERIOD, 11.0 * PERIOD, 8e-6
-"""From when the speed is measured, until when, and in which steps [s]"""
+"""Start and end of the speed measurement, and time step [s]"""
 SPEED = 0.50179 / (DURATION - START)
-"""What PyElastica 0.2.2 gives for this snake in these steps: 0.50179 m from 4 s to 22 s [m/s]"""
+"""Speed in PyElastica 0.2.2 with this time step: 0.50179 m from 4 s to 22 s [m/s]"""
 
 
 class Simulator(BaseSystemCollection, Forcing, CallBacks):
-    """A snake, the ground, and a look at it."""
+    """A snake, the ground and a callback."""
 
 
 class WayCallBack(CallBackBaseClass):
-    """Notes where the centre of mass is."""
+    """Records the position of the centre of mass."""
 
     def __init__(self, every: int, times: list, places: list) -> None:
         self.every, self.times, self.places = every, times, places
 
     def make_callback(self, system: CosseratRod, time: float, current_step: int) -> None:
-        """Append time and place."""
+        """Append time and position."""
         self.times.append(time)
         self.places.append(system.compute_position_center_of_mass())
 
 
 def crawl() -> tuple[np.ndarray, np.ndarray]:
-    """Return times [s], (m,), and places of the centre of mass [m], (m, 3)."""
+    """Return times [s], (m,), and positions of the centre of mass [m], (m, 3)."""
     up, young = np.array([0.0, 1.0, 0.0]), 1e6
     snake = CosseratRod.straight_rod(
         50,
@@ -94,7 +94,7 @@ def crawl() -> tuple[np.ndarray, np.ndarray]:
 
 
 def measure() -> Result:
-    """Return the way from ``START`` on, beside PyElastica's."""
+    """Return the distance since ``START``, next to PyElastica's."""
     times, places = crawl()
     first = int(np.searchsorted(times, START - 0.5 * TIME_STEP))
     way = np.linalg.norm(places[first:] - places[first], axis=1)

@@ -1,4 +1,4 @@
-"""A cantilever with a force across its end bends and shears (Gazzola et al. 2018, section 3.4.3).
+"""A cantilever with a transverse end force bends and shears (Gazzola et al. 2018, section 3.4.3).
 
 The error falls with the square of the number of elements, from 5 to 200.
 """
@@ -23,7 +23,7 @@ from elastica_gym.cosserat import (
 LENGTH, RADIUS, DENSITY, YOUNG, SHEAR, FORCE = 3.0, 0.25, 500.0, 1e6, 1e4, -0.1
 SIZES = (5, 10, 20, 50, 100, 200)
 REST = 20.0
-"""Time in which damping brings the rod to rest [s]"""
+"""Time for damping to bring the rod to rest [s]"""
 
 
 class Simulator(BaseSystemCollection, Constraints, Forcing, Damping):
@@ -31,7 +31,7 @@ class Simulator(BaseSystemCollection, Constraints, Forcing, Damping):
 
 
 def deflection(n: int) -> float:
-    """Return where the end of a rod of n elements comes to rest [m]."""
+    """Return the end deflection at rest of a rod of n elements [m]."""
     simulator = Simulator()
     rod = CosseratRod.straight_rod(
         n,
@@ -55,9 +55,9 @@ def deflection(n: int) -> float:
 
 
 def exact(n: int) -> float:
-    """Return the deflection by Timoshenko's theory of a rod whose first element is clamped [m].
+    """Return the deflection of a rod with a clamped first element by Timoshenko's theory [m].
 
-    The first element does not turn, so bending begins half an element into the second.
+    The first element does not rotate, so bending starts half an element into the second.
     """
     area = np.pi * RADIUS**2
     bending = YOUNG * area**2 / (4.0 * np.pi)

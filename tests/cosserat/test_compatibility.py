@@ -216,7 +216,9 @@ def test_rods_ignore_unknown_keywords_as_theirs_but_say_so():
     make_rod(theirs, shear_moduli=4e4)
     with pytest.warns(UserWarning, match=r"straight_rod ignores the unknown keyword shear_moduli; did you mean shear_"):
         make_rod(ours, shear_moduli=4e4)
-    with pytest.warns(UserWarning, match=r"ring_rod ignores the unknown keyword colour; known keywords: n_elements, ring_"):
+    with pytest.warns(
+        UserWarning, match=r"ring_rod ignores the unknown keyword colour; known keywords: n_elements, ring_"
+    ):
         ours.CosseratRod.ring_rod(8, np.ones(3), Z, Y, colour="red", **ROD)
 
 
