@@ -1,4 +1,4 @@
-"""Scripts that say ``elastica``."""
+"""Scripts that import ``elastica``."""
 
 import subprocess
 import sys
@@ -45,7 +45,7 @@ def run(*arguments):
     return subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=False)
 
 
-def test_a_script_runs_as_it_is(tmp_path):
+def test_a_script_runs_unchanged(tmp_path):
     (tmp_path / "script.py").write_text(SCRIPT)
     (tmp_path / "neighbour.py").write_text("ANSWER = 42")
     done = run("-m", "elastica_gym.cosserat", tmp_path / "script.py", "--flag")

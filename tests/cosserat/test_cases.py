@@ -1,4 +1,4 @@
-"""The cases of `scripts/cases` keep to theory, and write their pictures."""
+"""The cases of `scripts/cases` agree with theory and write their pictures."""
 
 import importlib
 import re
@@ -26,7 +26,7 @@ def test_theory(name, load):
     assert result.error <= result.bound
 
 
-def test_a_thick_butterfly_keeps_its_energy_only_with_the_tension_that_the_model_lacks(load):
+def test_a_thick_butterfly_conserves_energy_only_with_reciprocal_tension(load):
     case = load("butterfly")
     # a shorter step does not help
     assert all(case.drift(case.fly(case.PUBLISHED, part)[1]) > 0.05 for part in (0.2, 0.05))
@@ -34,19 +34,19 @@ def test_a_thick_butterfly_keeps_its_energy_only_with_the_tension_that_the_model
     assert half < 0.55 * whole < 0.55 * 1e-2
 
 
-def test_a_plectoneme_lies_on_itself(load):
+def test_a_plectoneme_is_in_contact_with_itself(load):
     case = load("plectoneme")
     nodes = case.wind()[1][-1]
     apart = np.linalg.norm(nodes[:, :, None] - nodes[:, None, :], axis=0)
     i, j = np.indices(apart.shape)
     far_along = apart[i - j > 4.0 * np.pi * case.RADIUS / case.LENGTH * case.N]
-    # contact is a spring: it gives by a tenth of a radius
+    # contact is a spring, compressed by a tenth of a radius
     assert 1.8 * case.RADIUS < far_along.min() < 2.0 * case.RADIUS
     assert case.compute_writhe(nodes[None], case.LENGTH)[0] < -2.5
 
 
 @pytest.mark.slow
-def test_helical_buckling_converges_in_second_order(load):
+def test_helical_buckling_converges_with_second_order(load):
     case, sizes = load("helical_buckling"), (100, 200, 400)
     errors = [case.error(n, case.slopes(n)) for n in sizes]
     assert -np.polyfit(np.log(sizes), np.log(errors), 1)[0] == pytest.approx(2.0, abs=0.2)

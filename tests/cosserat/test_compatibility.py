@@ -1,4 +1,4 @@
-"""What scripts rely on beside the physics, as PyElastica 1.0.0 has it: shapes, files, keywords, small methods."""
+"""Compatibility with PyElastica 1.0.0 beyond the physics: shapes, files, keywords, small methods."""
 
 import pickle
 import warnings
@@ -42,7 +42,7 @@ def make_systems(lib):
 
 
 def shapes_of(system):
-    """Return type, shape and dtype of all public attributes, and of what the methods ``compute_...`` return."""
+    """Return type, shape and dtype of all public attributes and of the results of ``compute_...`` methods."""
     found = {}
     for name in dir(system):
         value = None if name.startswith("_") else getattr(system, name)
@@ -50,7 +50,7 @@ def shapes_of(system):
             try:
                 value = value()
             except (AssertionError, ValueError):
-                # a ring has no twist
+                # twist is not defined for a ring
                 value = None
         if isinstance(value, np.ndarray | np.generic):
             found[name] = isinstance(value, np.ndarray), value.shape, value.dtype
@@ -67,14 +67,14 @@ def test_shapes(name, is_finalized):
         if is_finalized:
             sim.finalize()
         with warnings.catch_warnings():
-            # theirs divides by the dilatation of a ring before it has one
+            # PyElastica divides by a ring's dilatation before setting it
             warnings.simplefilter("ignore", RuntimeWarning)
             shapes.update(shapes_of(systems[name]))
     assert len(expected) > 1
     assert {attribute: found.get(attribute) for attribute in expected} == expected
 
 
-def test_scripts_read_bodies_as_arrays():
+def test_attributes_of_bodies_are_arrays():
     sim, cylinder = simulator(ours), make_systems(ours)["cylinder"]
     sim.append(cylinder)
     mass = cylinder.mass
@@ -169,7 +169,7 @@ def test_exported_files_by_their_size(tmp_path):
         class Export(lib.ExportCallBack):
             FILE_SIZE_CUTOFF = 5000
 
-        # theirs reads the bound of the class itself
+        # PyElastica reads the bound from the class
         bound, lib.ExportCallBack.FILE_SIZE_CUTOFF = lib.ExportCallBack.FILE_SIZE_CUTOFF, 5000
         sim.append(rod)
         sim.collect_diagnostics(rod).using(Export, 10, "rod", str(folder), "npz")
@@ -181,7 +181,7 @@ def test_exported_files_by_their_size(tmp_path):
     assert len(files[0]) > 1 and files[0] == files[1]
 
 
-def test_nothing_was_saved_before_the_first_file(tmp_path):
+def test_there_is_no_last_path_before_the_first_file(tmp_path):
     for lib in (theirs, ours):
         assert lib.ExportCallBack(10, "rod", str(tmp_path / lib.__name__), "npz").get_last_saved_path() is None
 
@@ -198,7 +198,7 @@ def test_a_normal_along_the_axis_of_a_cylinder_is_replaced(direction):
     assert np.allclose(Q[2], direction / np.linalg.norm(direction))
 
 
-def test_a_slanted_normal_of_a_cylinder_is_straightened():
+def test_an_oblique_normal_of_a_cylinder_is_made_perpendicular():
     with pytest.warns(UserWarning, match="its perpendicular part is used"):
         cylinder = ours.Cylinder(np.zeros(3), Z, X + Z, 0.3, 0.01, 1000.0)
     assert np.allclose(cylinder.director_collection[..., 0], [X, Y, Z], atol=1e-14)
@@ -212,7 +212,7 @@ def test_shear_correction_of_0_2():
         make_rod(ours, alpha_c=0.0)
 
 
-def test_rods_ignore_unknown_keywords_as_theirs_but_say_so():
+def test_rods_ignore_unknown_keywords_with_a_warning():
     make_rod(theirs, shear_moduli=4e4)
     with pytest.warns(UserWarning, match=r"straight_rod ignores the unknown keyword shear_moduli; did you mean shear_"):
         make_rod(ours, shear_moduli=4e4)
@@ -236,7 +236,7 @@ FEATURES = {
 
 
 @pytest.mark.parametrize(("method", "cls", "given", "wrong", "right"), FEATURES.values(), ids=FEATURES.keys())
-def test_features_ignore_unknown_keywords_as_theirs_but_say_so(method, cls, given, wrong, right):
+def test_features_ignore_unknown_keywords_with_a_warning(method, cls, given, wrong, right):
     for lib in (theirs, ours):
         sim, rod = simulator(lib), make_rod(lib)
         sim.append(rod)
@@ -249,7 +249,7 @@ def test_features_ignore_unknown_keywords_as_theirs_but_say_so(method, cls, give
         sim.finalize()
 
 
-def test_features_without_unknown_keywords_warn_of_nothing():
+def test_features_without_unknown_keywords_do_not_warn():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for method, cls, given, _, _ in FEATURES.values():
@@ -260,7 +260,7 @@ def test_features_without_unknown_keywords_warn_of_nothing():
 
 
 @pytest.mark.parametrize("name", ["GravityForces", "EndpointForces", "FreeJoint", "HingeJoint", "MyCallBack"])
-def test_features_that_refuse_unknown_keywords_in_theirs_refuse_them_here(name):
+def test_features_reject_unknown_keywords_if_pyelastica_does(name):
     given = {
         "GravityForces": ("add_forcing_to", {}),
         "EndpointForces": ("add_forcing_to", dict(start_force=X, end_force=X, ramp_up_time=1.0)),

@@ -1,4 +1,4 @@
-"""Systems that nothing joins run side by side on the CPUs, and to the same bits as in one."""
+"""Independent systems run in parallel on the CPUs, with bitwise the same results as in one simulation."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def make_rod(n, place):
 
 
 def scene(*sizes, every=2500):
-    """Return a simulator of rods that are each held and pulled, and what its callbacks will have seen."""
+    """Return a simulator of rods that are each held and pulled, and the list that its callbacks fill."""
     sim, seen = Simulator(), []
     for number, n in enumerate(sizes):
         rod = make_rod(n, float(number))
@@ -78,7 +78,7 @@ def test_ensemble_equals_one_simulation_bit_for_bit(monkeypatch):
     together, seen_together = scene(40, 17, 33, every=2000)
     together.finalize()
     assert not isinstance(together.simulation, Ensemble)
-    # long stretches on threads, then one that is not worth it
+    # long runs on threads, then one too short for threads
     for n_steps in (5000, 10):
         assert integrate(apart, n_steps) == integrate(together, n_steps)
     for one, two in zip(moved(apart), moved(together), strict=True):
@@ -89,7 +89,7 @@ def test_ensemble_equals_one_simulation_bit_for_bit(monkeypatch):
     assert all(np.array_equal(one[2], two[2]) for one, two in zip(seen_apart, seen_together, strict=True))
 
 
-def test_ensemble_is_saved_and_goes_on(tmp_path):
+def test_ensemble_is_saved_and_resumed(tmp_path):
     whole, _ = scene(40, 20)
     whole.finalize()
     integrate(whole, 4000)
@@ -104,7 +104,7 @@ def test_ensemble_is_saved_and_goes_on(tmp_path):
         assert np.array_equal(one, two)
 
 
-def test_loads_set_from_outside_act_on_every_part():
+def test_external_loads_act_on_every_part():
     sim, _ = scene(40, 20)
     sim.finalize()
     for rod in sim:
@@ -130,14 +130,14 @@ def look_often(sim):
 
 
 @pytest.mark.parametrize("add", [join, touch, call, look_often])
-def test_what_must_stay_together_does(add):
+def test_coupled_systems_run_in_one_simulation(add):
     sim, _ = scene(40, 20)
     add(sim)
     sim.finalize()
     assert not isinstance(sim.simulation, Ensemble)
 
 
-def test_a_plane_joins_nothing():
+def test_a_plane_does_not_join_systems():
     sim, _ = scene(40, 20)
     plane = ea.Plane(plane_origin=np.zeros(3), plane_normal=Y)
     sim.append(plane)
@@ -159,7 +159,7 @@ class Sized:
 
 
 @given(st.data())
-def test_groups_keep_together_what_is_joined(data):
+def test_joined_systems_are_in_one_group(data):
     movers = [Sized(n) for n in data.draw(st.lists(st.integers(1, 50), min_size=1, max_size=12))]
     place = st.sampled_from(movers)
     joints = [Joined(*pair) for pair in data.draw(st.lists(st.tuples(place, place), max_size=8))]

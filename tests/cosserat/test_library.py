@@ -1,4 +1,4 @@
-"""The documented library as its users meet it: simulators, their own classes, callbacks, restarts, errors."""
+"""The library from the user's side: simulators, own classes, callbacks, restarts, errors."""
 
 import pickle
 import signal
@@ -50,7 +50,7 @@ class OwnEndpointForces(ea.NoForces):
 
 
 class EndpointForcesWithTorques(ea.NoForces):
-    """As in the documentation's advanced guide."""
+    """As in PyElastica's advanced guide."""
 
     def __init__(self, end_force, ramp_up_time=0.0):
         self.end_force, self.ramp_up_time = end_force, ramp_up_time
@@ -85,7 +85,7 @@ class OwnDamper(ea.DamperBase):
 
 
 class OwnJoint(ea.FreeJoint):
-    """Before 1.0 joints were not told the time."""
+    """Methods of joints before 1.0 had no time argument."""
 
     def apply_forces(self, system_one, index_one, system_two, index_two):
         super().apply_forces(system_one, index_one, system_two, index_two)
@@ -101,7 +101,7 @@ class OwnContact(ea.NoContact):
 
 
 def by_either(built_in, own):
-    """Return final positions of a rod with a built-in feature, and with the user's own that does the same."""
+    """Return final positions of a rod with a built-in feature, and with the equivalent own class."""
     found = []
     for declare in (built_in, own):
         rods = make_rod(), make_rod()
@@ -143,12 +143,12 @@ PAIRS = {
 
 
 @pytest.mark.parametrize(("built_in", "own"), PAIRS.values(), ids=PAIRS.keys())
-def test_own_class_does_what_the_built_in_one_does(built_in, own):
+def test_own_class_equals_the_built_in_one(built_in, own):
     expected, found = by_either(built_in, own)
     assert np.abs(expected - found).max() < 1e-14
 
 
-# what a subclass that overrides nothing calls, written in Python, must do what the compiled rows do
+# Python methods called by a subclass without overrides must agree with the compiled rows
 
 PYTHON = {
     ea.GravityForces: ("add_forcing_to", (np.array([0.1, -9.8, 2.0]),), {}, ("apply_forces", "apply_torques")),
@@ -171,7 +171,7 @@ PYTHON = {
 
 
 def through_super(cls, name):
-    """Return a method that overrides and does the same."""
+    """Return an override that only calls super."""
     return lambda self, *arguments: getattr(cls, name)(self, *arguments)
 
 
@@ -186,7 +186,7 @@ def test_subclass_that_calls_super(cls):
     assert np.abs(expected - found).max() < 1e-13
 
 
-# the tension that the documented model lacks
+# reciprocal tension
 
 
 def thick_ring():
@@ -203,11 +203,11 @@ def thick_rod():
 
 
 class OwnTension(ea.ReciprocalTension):
-    """Is called, since it may be changed during a run."""
+    """A subclass is called, since it may change during a run."""
 
 
 @pytest.mark.parametrize("make", [thick_ring, thick_rod])
-def test_tension_is_that_of_its_formula_and_internal(make):
+def test_tension_agrees_with_its_formula_and_is_internal(make):
     found = []
     for tension in (ea.ReciprocalTension, OwnTension, None):
         rod = make()
@@ -229,8 +229,8 @@ def test_tension_is_that_of_its_formula_and_internal(make):
 
 
 @pytest.mark.slow
-def test_a_rod_that_hardly_shears_bends_without_flutter_if_it_has_the_tension():
-    """The published beam, at twice its load and in a shorter time, against Timoshenko's deflection."""
+def test_a_shear_stiff_rod_bends_without_flutter_with_reciprocal_tension():
+    """The published beam, at twice the load and for a shorter time, against Timoshenko's deflection."""
     length, radius, young, shear, force = 3.0, 0.25, 1e6, 1e6 / 0.3, -30.0
     area = np.pi * radius**2
     exact = force * length / (27 / 28 * shear * area) + force * length**3 / (3.0 * young * area**2 / (4.0 * np.pi))
@@ -252,7 +252,7 @@ def test_a_rod_that_hardly_shears_bends_without_flutter_if_it_has_the_tension():
 
 
 class Pulled(ea.EndpointForces):
-    """Overrides nothing, but lets itself be found."""
+    """Overrides nothing, but registers its instance."""
 
     def __init__(self, found, **kwargs):
         super().__init__(**kwargs)
@@ -272,10 +272,10 @@ def test_a_subclass_may_be_changed_during_a_run():
 
 
 class Softer(ea.RodSelfContact):
-    """Overrides nothing of what has no implementation but the compiled one."""
+    """A subclass of a compiled-only feature, without overrides."""
 
 
-def test_a_subclass_of_what_is_compiled_is_what_it_is_derived_from():
+def test_a_subclass_of_a_compiled_feature_equals_its_base():
     rod = make_rod()
     sim = simulator(rod)
     sim.detect_contact_between(rod, rod).using(Softer, k=1.0, nu=0.0)
@@ -301,7 +301,7 @@ class Failing(ea.NoForces):
             raise FloatingPointError("the user's own error")
 
 
-def test_error_in_own_class_reaches_the_caller():
+def test_error_in_own_class_propagates_to_the_caller():
     rod = make_rod()
     sim = simulator(rod)
     sim.add_forcing_to(rod).using(Failing)
@@ -310,7 +310,7 @@ def test_error_in_own_class_reaches_the_caller():
         integrate(sim, 100)
 
 
-def test_force_from_outside_acts_once():
+def test_external_force_acts_once():
     rod = make_rod()
     sim = simulator(rod)
     sim.finalize()
@@ -416,7 +416,7 @@ ea.integrate(ea.PositionVerlet(), sim, 1e-2, 1000, progress_bar=False)
 """
 
 
-def test_a_kill_loses_what_was_not_yet_written_and_no_more(tmp_path):
+def test_a_kill_loses_only_samples_not_yet_written(tmp_path):
     killed = subprocess.run([sys.executable, "-c", KILLED, tmp_path], check=False)
     assert killed.returncode == -signal.SIGKILL
     whole = list(range(0, 91, 10))
@@ -426,7 +426,7 @@ def test_a_kill_loses_what_was_not_yet_written_and_no_more(tmp_path):
     assert np.concatenate(steps).tolist() == whole
 
 
-# restarts, and runs cut in pieces
+# restarts, and runs in several parts
 
 
 def moving():
@@ -442,7 +442,7 @@ def moving():
 
 
 @pytest.mark.parametrize("stepper", [ea.PositionVerlet(), ea.PEFRL()], ids=["verlet", "pefrl"])
-def test_the_same_bits_wherever_a_run_is_cut_or_restarted(stepper, tmp_path):
+def test_a_run_is_bitwise_the_same_in_parts_or_restarted(stepper, tmp_path):
     sim, rods = moving()
     integrate(sim, 1500, stepper=stepper)
     whole = [rod.position_collection.copy() for rod in rods]
@@ -458,8 +458,8 @@ def test_the_same_bits_wherever_a_run_is_cut_or_restarted(stepper, tmp_path):
         assert np.array_equal(rod.position_collection, expected)
 
 
-def test_the_same_bits_of_a_body_that_rubs_on_a_plane(tmp_path):
-    """What friction was when the state was saved is a part of it: the search for what it is now starts there."""
+def test_a_restart_of_a_body_sliding_on_a_plane_is_bitwise_the_same(tmp_path):
+    """The saved state includes friction, which is the warm start of the solver."""
 
     def rubbing():
         body, sim = ea.Cylinder(np.array([0.0, 0.02, 0.0]), X, Y, 0.1, 0.02, 500.0), Simulator()
@@ -483,7 +483,7 @@ def test_the_same_bits_of_a_body_that_rubs_on_a_plane(tmp_path):
     assert np.array_equal(body.omega_collection, whole[1])
 
 
-def test_script_that_steps_by_itself():
+def test_script_with_its_own_loop():
     sim, rods = moving()
     integrate(sim, 50)
     expected = rods[1].position_collection.copy()
@@ -496,7 +496,7 @@ def test_script_that_steps_by_itself():
     assert np.array_equal(rods[1].position_collection, expected)
 
 
-def test_progress_is_shown_if_it_is_wanted(capfd):
+def test_progress_is_shown_on_request(capfd):
     sim, _ = moving()
     for wanted in (True, False):
         ea.integrate(ea.PositionVerlet(), sim, 50 * DT, 50, progress_bar=wanted)
@@ -506,7 +506,7 @@ def test_progress_is_shown_if_it_is_wanted(capfd):
 def test_order_of_the_steppers():
     """Halving the step divides the error by 4 in position Verlet and by 16 in PEFRL.
 
-    A rod that only stretches: the torques that depend on angular velocity spoil the order.
+    For a rod that only stretches: torques that depend on angular velocity reduce the order.
     """
 
     def end(stepper, n_steps):
@@ -527,7 +527,7 @@ def test_order_of_the_steppers():
 # attributes
 
 
-def test_attributes_own_before_and_view_after():
+def test_attributes_are_arrays_before_finalize_and_views_after():
     rod = make_rod()
     rod.shear_matrix = 2.0 * rod.shear_matrix
     rod.bend_matrix[2, 2, :] = 0.5
@@ -545,7 +545,7 @@ def test_attributes_own_before_and_view_after():
     assert np.allclose(model.inv_mass[first : first + 13], 1.0 / 7.0)
 
 
-def test_attributes_refuse():
+def test_errors_of_attributes():
     rod = make_rod()
     with pytest.raises(ValueError, match=r"mass must have shape \(13,\)"):
         rod.mass = np.ones(5)
@@ -560,8 +560,8 @@ def test_attributes_refuse():
         integrate(sim, 1)
 
 
-def test_scripts_that_shape_a_rod_may_write_what_follows_too():
-    """As they must in the original, where it is stored; what counts is position, volume and lengths at rest."""
+def test_derived_attributes_may_be_written():
+    """As required in PyElastica, which stores them; only position, volume and rest lengths have an effect."""
     rod = make_rod()
     lengths = np.linspace(0.02, 0.03, 12)
     rod.position_collection[2, 1:] = np.cumsum(lengths)
@@ -576,7 +576,7 @@ def test_scripts_that_shape_a_rod_may_write_what_follows_too():
     assert rod.radius == pytest.approx(0.01)
     integrate(sim, 100)
     assert np.abs(rod.velocity_collection).max() < 1e-9
-    # and environments that reset one
+    # as environments do when they reset a rod
     for name in ("acceleration_collection", "alpha_collection", "internal_forces", "internal_torques"):
         getattr(rod, name).fill(0.0)
     rod.dilatation.fill(2.0)
@@ -649,13 +649,13 @@ def test_errors_of_using():
     refuses(lambda: sim.connect(rod, rod, -1, 99), "second_connect_idx", "99", error=IndexError)
 
 
-def test_nothing_is_added_after_finalize():
+def test_adding_after_finalize_raises():
     sim, rods = moving()
     for action in (sim.finalize, lambda: sim.append(make_rod()), lambda: sim.add_forcing_to(rods[0])):
         refuses(action, "finalized", error=RuntimeError)
 
 
-def test_unstable_time_step_is_warned_of():
+def test_unstable_time_step_gives_a_warning():
     rod = make_rod()
     sim = simulator(rod)
     sim.finalize()
@@ -664,7 +664,7 @@ def test_unstable_time_step_is_warned_of():
         ea.integrate(ea.PositionVerlet(), sim, 2.0 * bound, 1, progress_bar=False)
 
 
-def test_unstable_time_step_of_a_damper_is_warned_of_at_finalize():
+def test_unstable_time_step_of_a_damper_gives_a_warning_at_finalize():
     rod = make_rod()
     sim = simulator(rod)
     sim.dampen(rod).using(ea.AnalyticalLinearDamper, uniform_damping_constant=1.0, time_step=1e-2)
@@ -672,7 +672,7 @@ def test_unstable_time_step_of_a_damper_is_warned_of_at_finalize():
         sim.finalize()
 
 
-def test_a_system_is_in_a_simulator_once():
+def test_a_system_cannot_be_added_twice():
     rods = [make_rod() for _ in range(3)]
     sim = simulator(*rods[:2])
     with pytest.raises(ValueError, match="already"):
@@ -705,7 +705,7 @@ def test_muscles_without_ramp_are_at_full_strength_from_the_start():
         integrate(sim, 1)
         return rod.omega_collection.copy()
 
-    # time in the middle of the first step is DT/2
+    # the middle of the first step is at DT/2
     assert np.abs(after_a_step(0.0)).max() > 0.0
     assert np.allclose(after_a_step(0.0), 2.0 * after_a_step(DT), rtol=1e-12)
 
@@ -730,7 +730,7 @@ def test_dampers_act_on_rigid_bodies():
 
 @pytest.mark.parametrize("order", [1, 4])
 def test_filter_of_a_ring_has_no_seam(order):
-    """The shortest wave goes in a step, wherever it begins; a uniform motion stays."""
+    """The shortest wave vanishes in one step, wherever it starts; uniform motion stays."""
     ring = ea.CosseratRod.ring_rod(16, np.zeros(3), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e-6)
     sim = simulator(ring)
     sim.dampen(ring).using(ea.LaplaceDissipationFilter, order)
@@ -744,7 +744,7 @@ def test_filter_of_a_ring_has_no_seam(order):
     ("cls", "args"),
     [(ea.LaplaceDissipationFilter, (3,)), (ea.RayleighDissipation, (1.0,)), (ea.SlenderBodyTheory, (1.0,))],
 )
-def test_what_acts_along_rods_refuses_bodies(cls, args):
+def test_features_along_rods_reject_bodies(cls, args):
     body = ea.Sphere(np.zeros(3), 0.05, 500.0)
     sim = simulator(body)
     declare = sim.add_forcing_to if issubclass(cls, ea.NoForces) else sim.dampen
@@ -752,7 +752,7 @@ def test_what_acts_along_rods_refuses_bodies(cls, args):
     refuses(sim.finalize, "rod", "Sphere", error=TypeError)
 
 
-def test_contact_as_a_joint_takes_none_as_indices():
+def test_contact_as_a_joint_accepts_none_as_indices():
     rod, body = make_rod(), ea.Cylinder(np.array([-0.05, 0.025, 0.1]), X, Y, 0.1, 0.02, 500.0)
     sim = simulator(rod, body)
     sim.connect(rod, body, first_connect_idx=None, second_connect_idx=None).using(ea.ExternalContact, k=100.0, nu=0.1)

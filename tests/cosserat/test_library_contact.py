@@ -1,4 +1,4 @@
-"""Contact in the documented library: it parts what overlaps, and changes neither momentum nor angular momentum."""
+"""Contact in the library: it separates overlapping systems, and conserves momentum and angular momentum."""
 
 import numpy as np
 import pytest
@@ -52,7 +52,7 @@ def momenta(*systems):
     return total
 
 
-# each with one thing moving towards the other
+# in each, one system moves towards the other
 CONTACTS = {
     "rod on rod": (lambda: make_rod((-0.1, 0.018, 0.1), X, Z), ea.RodRodContact, {}),
     "rod on cylinder": (make_cylinder, ea.RodCylinderContact, {}),
@@ -67,7 +67,7 @@ CONTACTS = {
 
 @pytest.mark.parametrize("is_joint", [False, True], ids=["contact", "as in 0.2.x"])
 @pytest.mark.parametrize(("make", "cls", "options"), CONTACTS.values(), ids=CONTACTS.keys())
-def test_parts_what_overlaps(make, cls, options, is_joint):
+def test_overlapping_systems_separate(make, cls, options, is_joint):
     rod, other, sim = make_rod((0.0, 0.0, 0.0)), make(), Simulator()
     sim.append(rod)
     sim.append(other)
@@ -96,7 +96,7 @@ def test_only_declared_pairs_touch():
 
 
 def heap(laws):
-    """Return rods that lie across each other, of which those with a law touch, and their simulator."""
+    """Return crossing rods, with contact between those with a law, and their simulator."""
     rng, rods, sim = np.random.default_rng(0), [], Simulator()
     for _ in range(12):
         direction = rng.standard_normal(3)
@@ -126,8 +126,8 @@ def advance(sim, n_steps):
     ea.integrate(ea.PositionVerlet(), sim, n_steps * DT, n_steps, progress_bar=False)
 
 
-def test_a_heap_is_that_of_the_environments():
-    """Which compares each pair of elements in other ways."""
+def test_a_heap_agrees_with_the_environments():
+    """The environments check pairs of elements in another way."""
     law = dict(stiffness=1e3, damping=0.5)
     sim, rods = heap(lambda _: [dict(k=1e3, nu=0.5)])
     model, _ = build_model([rod.as_continuum() for rod in rods], rod_contact=Contact(**law)), None
@@ -149,8 +149,8 @@ def test_two_laws_of_a_pair_add_up():
 
 
 @pytest.mark.parametrize("stray", [0.0, 2e-3], ids=["listed at each step", "kept"])
-def test_the_same_bits_however_pairs_are_found(stray):
-    """With and without room for a list, and however long it is kept."""
+def test_results_do_not_depend_on_the_neighbour_list(stray):
+    """Bitwise, with and without room for a list, and for any list lifetime."""
 
     def laws(i):
         return [dict(k=1e3 + i, nu=0.5)]
@@ -166,7 +166,7 @@ def test_the_same_bits_however_pairs_are_found(stray):
     assert np.array_equal(found[0], found[2])
 
 
-def test_what_diverged_ends():
+def test_a_diverged_run_ends():
     sim, rods = heap(lambda _: [dict(k=1e3, nu=0.5)])
     rods[3].position_collection[1, 4] = np.nan
     rods[7].velocity_collection[0, 2] = 1e300
@@ -174,7 +174,7 @@ def test_what_diverged_ends():
     assert np.isnan(rods[3].position_collection).any()
 
 
-def test_only_the_rod_of_a_pair_touches_a_body():
+def test_only_the_declared_rod_touches_a_body():
     rods = [make_rod((0.0, 0.0, 0.0)), make_rod((0.001, 0.0, 0.0))]
     body, sim = make_cylinder(), Simulator()
     for system in (*rods, body):
@@ -186,7 +186,7 @@ def test_only_the_rod_of_a_pair_touches_a_body():
 
 
 def test_rod_touches_itself():
-    """A hairpin whose arms overlap opens; without contact it stays."""
+    """A hairpin with overlapping arms opens; without contact it stays."""
     angle = np.linspace(0.0, np.pi, 15)
     arms = np.linspace(0.0, 0.1, 12)[1:]
     y = np.concatenate([np.full(11, 0.009), 0.009 * np.cos(angle), np.full(11, -0.009)])
@@ -214,7 +214,7 @@ def test_cylinder_rests_on_a_plane():
     sim.add_forcing_to(body).using(ea.GravityForces)
     sim.detect_contact_between(body, plane).using(ea.CylinderPlaneContact, k=1e4, nu=20.0, friction_coefficient=0.5)
     run(sim, 30_000)
-    # three points of contact carry it
+    # three contact points carry it
     depth = body.mass * 9.80665 / (3 * 1e4)
     assert body.position_collection[1, 0] == pytest.approx(0.05 - depth, abs=1e-7)
 
@@ -227,7 +227,7 @@ RING_CONTACTS = {
 
 
 @pytest.mark.parametrize("what", RING_CONTACTS)
-def test_a_ring_in_contact_is_refused(what):
+def test_a_ring_in_contact_raises(what):
     ring, (cls, other), sim = (
         ea.CosseratRod.ring_rod(8, np.zeros(3), Z, Y, 0.5, 0.01, 1000.0, youngs_modulus=1e5),
         RING_CONTACTS[what](),

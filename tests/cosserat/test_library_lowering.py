@@ -1,4 +1,4 @@
-"""How features become rows: arrays they follow, the order of constraints, calls by hand, and runs that break."""
+"""Lowering of features to rows: followed arrays, the order of constraints, calls by hand, and diverging runs."""
 
 import copy
 import pickle
@@ -72,14 +72,14 @@ def test_the_constraint_declared_last_wins(is_own_last):
     time = integrate(sim, 200)
     assert rod.position_collection[0, 0] == pytest.approx(time if is_own_last else 0.0, abs=1e-12)
     assert rod.velocity_collection[0, 0] == float(is_own_last)
-    # what no own class was declared for before stays in the compiled step
+    # systems without an own class before stay in the compiled step
     assert sim.simulation.scene.pins.slot.size == 1
 
 
-# runs that break
+# diverging runs
 
 
-def test_a_run_that_breaks_says_where_and_when_it_did_and_once():
+def test_a_diverging_run_warns_once_of_system_and_step():
     calm, wild = make_rod(), make_rod(start=(1.0, 0.0, 0.0))
     sim = simulator(ea.Plane(np.zeros(3), Y), calm, wild)
     sim.finalize()
@@ -98,14 +98,14 @@ class EveryStep(ea.CallBackBaseClass):
 
 
 class Kick(ea.NoForces):
-    """Pushes without bound after a time."""
+    """Applies an infinite force after a given time."""
 
     def apply_forces(self, system, time=0.0):
         if time > 37 * DT:
             system.external_forces[1, -1] = np.inf
 
 
-def test_the_first_step_is_told_within_eight_and_exactly_of_single_steps():
+def test_the_first_diverged_step_is_found_within_eight_or_exactly_in_single_steps():
     for number, name in enumerate(("CosseratRod 0", "Sphere 1")):
         sim = simulator(make_rod(), ea.Sphere(np.zeros(3), 0.05, 500.0))
         sim.add_forcing_to(sim[number]).using(Kick)
@@ -121,10 +121,10 @@ def test_the_first_step_is_told_within_eight_and_exactly_of_single_steps():
             integrate(sim, 200)
 
 
-# arrays that are followed
+# followed arrays
 
 
-def test_material_written_later_is_that_of_gravity_too():
+def test_material_written_later_changes_gravity_too():
     rod = make_rod()
     sim = simulator(rod)
     sim.add_forcing_to(rod).using(ea.GravityForces, -9.8 * Y)
@@ -135,7 +135,7 @@ def test_material_written_later_is_that_of_gravity_too():
     assert rod.compute_velocity_center_of_mass()[1] == pytest.approx(-9.8 * 101 * DT, rel=1e-12)
 
 
-def test_dampers_stay_what_they_were_when_something_else_changes():
+def test_dampers_stay_unchanged_when_other_features_change():
     force = np.zeros(3)
     rod = make_rod()
     sim = simulator(rod)
@@ -152,7 +152,7 @@ def test_dampers_stay_what_they_were_when_something_else_changes():
     assert rod.velocity_collection[0, 0] == pytest.approx(DT / rod.mass[0] * np.exp(-rates.max() * DT), rel=1e-12)
 
 
-def test_a_plane_that_is_moved_between_runs():
+def test_a_plane_moved_between_runs():
     rod, plane = make_rod(start=(0.0, 0.02, 0.0)), ea.Plane(np.zeros(3), Y)
     sim = simulator(rod, plane)
     sim.detect_contact_between(rod, plane).using(ea.RodPlaneContact, k=10.0, nu=0.0)
@@ -167,7 +167,7 @@ def test_a_plane_that_is_moved_between_runs():
 # copies
 
 
-def test_a_finalized_simulator_is_not_copied():
+def test_a_finalized_simulator_cannot_be_copied():
     sim = simulator(make_rod())
     twin = copy.deepcopy(sim)
     assert twin.get_system_index(twin[0]) == 0
@@ -192,7 +192,7 @@ def crossing():
 
 
 def folded():
-    """A rod of two stretches side by side that overlap, and an arc between them."""
+    """A rod of two overlapping parallel parts joined by an arc."""
     angle = np.linspace(0.0, np.pi, 9)[1:-1]
     run = np.linspace(0.0, 0.4, 16)
     points = [(0.0, each) for each in run]
@@ -340,7 +340,7 @@ ALL = [*CONTACTS, *LOADS, *JOINTS, *CONSTRAINTS, *DAMPERS]
 
 
 def calling_super(cls):
-    """Return a subclass whose methods do nothing but call those of the built-in class."""
+    """Return a subclass whose methods only call those of the built-in class."""
 
     def through(name):
         return lambda self, *arguments: getattr(cls, name)(self, *arguments)
@@ -350,7 +350,7 @@ def calling_super(cls):
 
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
 def test_a_feature_acts_by_hand_as_in_the_compiled_step(cls):
-    """After 40 steps from a moving start, in which it changes the motion."""
+    """Compared after 40 steps from a moving start; the feature must change the motion."""
     make = {**CONTACTS, **JOINTS}.get(cls, (alone,))[0]
     found = []
     for built in (cls, calling_super(cls), None):
@@ -372,7 +372,7 @@ def test_a_feature_acts_by_hand_as_in_the_compiled_step(cls):
         )
     compiled, by_hand, without = found
     assert np.isfinite(compiled).all()
-    # RayleighDissipation by hand loads the next step, that is too late, as PyElastica's: its loads are cleared
+    # RayleighDissipation by hand has no effect, as in PyElastica: its loads are cleared before the next step
     if cls is not ea.RayleighDissipation:
         assert np.abs(compiled - by_hand).max() < 1e-11
     assert np.abs(compiled - without).max() > 1e-6 or cls is ea.FreeBC
@@ -395,9 +395,9 @@ def test_a_subclass_of_contact_may_add_to_it():
 
 
 def fall(scale, tolerance=None, attribute=None):
-    """Return the nodes over time, by the scale, of a rod that falls on a plane.
+    """Return the nodes over time, divided by the scale, of a rod that falls on a plane.
 
-    Lengths go with the scale L, stiffnesses per area and density stay, so times go with L.
+    Lengths scale with L, moduli and density are constant, so times scale with L.
     """
 
     class Ground(ea.RodPlaneContact):
@@ -412,7 +412,7 @@ def fall(scale, tolerance=None, attribute=None):
     )
     rod.position_collection[1] += 0.1 * r * np.linspace(0.0, 1.0, n + 1) ** 2
     sim = simulator(rod, ea.Plane(np.zeros(3), Y))
-    # the mass goes with L^3, the weight with L^2, as a spring's force does
+    # mass scales with L^3, weight with L^2 like a spring's force
     sim.add_forcing_to(rod).using(ea.GravityForces, np.array([0.0, -2e2, 0.0]) / scale)
     sim.detect_contact_between(rod, sim[1]).using(
         Ground, k=3e4 * scale, nu=20.0 * scale**2, surface_tol=None if tolerance is None else tolerance * scale
@@ -426,8 +426,8 @@ def fall(scale, tolerance=None, attribute=None):
 
 
 @pytest.mark.parametrize("how", [dict(tolerance=1e-4), dict(attribute=1e-4), dict()])
-def test_the_same_scene_at_another_scale_falls_alike(how):
-    """From 1 m to 10 um, or to where 1e-4 m is a twentieth of the radius, if the tolerance is not given."""
+def test_the_motion_of_a_falling_rod_scales(how):
+    """From 1 m to 10 um or, with the default tolerance, down to where 1e-4 m is a twentieth of the radius."""
     scales = (1.0, 1e-2, 1e-5) if how else (2e-2, 1e-3, 1e-5)
     first, *others = (fall(scale, **how) for scale in scales)
     assert first[0, 1].min() > first[-1, 1].min()
@@ -440,5 +440,5 @@ def test_a_small_rod_falls_on_a_plane():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         nodes = fall(1e-5)
-    # half a radius above it, it is no longer held
+    # at a height of half a radius, the plane does not hold it
     assert nodes[0, 1, -1] - nodes[3, 1, -1] > 1e-4

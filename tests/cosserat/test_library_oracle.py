@@ -1,4 +1,4 @@
-"""Each feature of the documented library beside PyElastica 1.0.0: the same script, run by either."""
+"""Each feature of the library against PyElastica 1.0.0: the same script, run by both."""
 
 import importlib
 import warnings
@@ -36,7 +36,7 @@ def make_rod(lib, n=N, start=(0.0, 0.0, 0.0), direction=Z, normal=Y, length=0.3,
 
 
 def shake(rod, seed=0):
-    """Set a rod in motion, and bend it."""
+    """Set a rod in motion and bend it."""
     rng = np.random.default_rng(seed)
     rod.velocity_collection[:] += 0.05 * rng.standard_normal(rod.velocity_collection.shape)
     rod.omega_collection[:] += 2.0 * rng.standard_normal(rod.omega_collection.shape)
@@ -55,7 +55,7 @@ def run(lib, scene, n_steps=1000, stepper="PositionVerlet"):
     sim = simulator(lib)
     systems = scene(lib, sim)
     sim.finalize()
-    # after finalize, where theirs would damp the velocities once
+    # after finalize, which would damp the velocities once in PyElastica
     for seed, system in enumerate(systems):
         shake(system, seed)
     lib.integrate(getattr(lib, stepper)(), sim, n_steps * DT, n_steps, progress_bar=False)
@@ -164,11 +164,11 @@ def joined(cls, *args, **kwargs):
 
 
 def side_by_side(lib, sim):
-    """Each pair of elements with a joint of its own: theirs takes the norm over all pairs of one for their distance."""
+    """One joint per pair of elements: PyElastica uses the norm over all pairs of a joint as their distance."""
     joints = importlib.import_module(f"{lib.__name__}.experimental.connection_contact_joint.parallel_connection")
 
     class Mended(joints.SurfaceJointSideBySide):
-        """Theirs cannot be made: it passes arguments to a base that takes none."""
+        """PyElastica's cannot be made: it passes arguments to a base without any."""
 
         def __init__(self, **options):
             vars(self).update(options)
@@ -270,7 +270,7 @@ SCENES = {
     "constrained and damped": constrained_and_damped,
     "tapered": tapered,
 }
-"""A function each of a library and a simulator, that returns the systems to compare"""
+"""Functions of a library and a simulator that return the systems to compare"""
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
@@ -286,13 +286,13 @@ def test_trajectory(scene):
 
 
 def test_trajectory_by_pefrl():
-    """Of a rod without loads and dampers, which act more than once a step in theirs."""
+    """For a rod without loads and dampers, which act more than once per step in PyElastica."""
     (expected,), (found,) = (run(lib, tapered, stepper="PEFRL") for lib in (theirs, ours))
     assert np.abs(found.position_collection - expected.position_collection).max() < 1e-9
 
 
 @pytest.mark.parametrize("cls", ["MyCallBack", "ExportCallBack"])
-def test_callbacks_note_the_same(cls, tmp_path):
+def test_callbacks_record_the_same(cls, tmp_path):
     noted = []
     for lib in (theirs, ours):
         sim, folder, history = simulator(lib), tmp_path / lib.__name__, defaultdict(list)
@@ -319,7 +319,7 @@ def test_callbacks_note_the_same(cls, tmp_path):
 
 
 def test_attributes_agree():
-    """What is computed when read is what PyElastica stores."""
+    """Attributes computed when read agree with those that PyElastica stores."""
     rods = []
     for lib in (theirs, ours):
         sim = simulator(lib)
@@ -330,7 +330,7 @@ def test_attributes_agree():
         lib.integrate(lib.PositionVerlet(), sim, 300 * DT, 300, progress_bar=False)
         rods.append(rod)
     a, b = rods
-    # theirs are half a step old: bring them up to date
+    # PyElastica's are half a step old: update them
     a.compute_internal_forces_and_torques(0.0)
     for name in (
         "lengths",
@@ -375,7 +375,7 @@ def test_attributes_agree():
 
 def make_cylinder(lib):
     body = lib.Cylinder(np.array([0.0, 0.01, 0.31]), Z, Y, 0.2, 0.03, 800.0)
-    # the original leaves the length out of the inertia
+    # PyElastica omits the length in the inertia
     inertia = ours.Cylinder(np.zeros(3), Z, Y, 0.2, 0.03, 800.0).mass_second_moment_of_inertia
     body.mass_second_moment_of_inertia[:] = inertia
     if lib is theirs:
@@ -475,7 +475,7 @@ def on_plane(friction, tolerance=1e-8, is_load=False):
 
 
 def corrected(lib, name):
-    """Return a class of contact, PyElastica's as docs/differences.md says that ours differs from it."""
+    """Return a contact class, PyElastica's corrected by docs/differences.md."""
     own = {
         "RodRodContact": oracle.PairContact,
         "RodSelfContact": oracle.SelfContact,
@@ -487,7 +487,7 @@ def corrected(lib, name):
 
 
 def touching(name, make_systems, friction=False):
-    """Return a scene of two systems in contact, or of one that touches itself, and whether it is on."""
+    """Return a scene of two systems in contact, or of one in self contact, which can be switched off."""
 
     def scene(lib, sim, touches):
         systems = make_systems(lib)
@@ -538,7 +538,7 @@ def make_ball(lib):
 
 
 def upright(lib):
-    """A cylinder beside a rod, and leaning."""
+    """A tilted cylinder next to a rod."""
     body = make_cylinder(lib)
     body.position_collection[:] = np.array([[0.02], [0.037], [0.31]])
     return body
@@ -564,7 +564,7 @@ CONTACTS = {
     "rod rubs sphere": touching("RodSphereContact", rod_and(make_ball), friction=True),
     "cylinder and plane": touching("CylinderPlaneContact", leaning),
 }
-"""A function each of a library, a simulator and whether there is contact, that returns the systems to compare"""
+"""Functions of a library, a simulator and whether there is contact that return the systems to compare"""
 
 
 def motion(system):
@@ -572,7 +572,7 @@ def motion(system):
 
 
 def disturbed(rest, rng, speed):
-    """Return a state near one at rest: nodes by 1 mm, directors by 0.05 rad, velocities by 0.1 m/s and 2 rad/s."""
+    """Disturb a state at rest: nodes by 1 mm, directors by 0.05 rad, velocities by 0.1 m/s and 2 rad/s."""
     x, v, Q, w = rest
     turns = rotations(0.05 * rng.standard_normal((Q.shape[2], 3)))
     return (
@@ -584,7 +584,7 @@ def disturbed(rest, rng, speed):
 
 
 def prepared(lib, scene, touches=True):
-    """Return what sets a state, takes a step and returns the state after."""
+    """Return a function that sets a state, takes a step and returns the new state."""
     sim = simulator(lib)
     systems = scene(lib, sim, touches)
     sim.finalize()
@@ -602,16 +602,16 @@ def prepared(lib, scene, touches=True):
 
 @pytest.mark.parametrize("scene", CONTACTS.values(), ids=CONTACTS.keys())
 def test_whole_step_from_a_thousand_states(scene):
-    """For v and w relative to their largest change, or to a tenth of the largest of all; for x and Q absolute.
+    """Errors of v and w relative to their largest change, or to a tenth of the largest of all; of x and Q absolute.
 
-    What turns a body by less than 1e-4 rad/s is rounding: a spring pushes a ball through its centre.
+    Changes of a body's spin below 1e-4 rad/s are rounding: a spring pushes a ball through its centre.
     """
     rest, ours_step = prepared(ours, scene)
     (_, theirs_step), (_, alone_step) = prepared(theirs, scene), prepared(ours, scene, touches=False)
     rng = np.random.default_rng(0)
     differences, changes, n_touching = [], [], 0
     for number in range(1000):
-        # sliding, or sticking
+        # sliding or sticking
         states = [disturbed(each, rng, (1.0, 1e-9)[number % 2]) for each in rest]
         found, expected, alone = ours_step(states), theirs_step(states), alone_step(states)
         n_touching += any((a[1] != b[1]).any() for a, b in zip(found, alone, strict=True))
@@ -634,11 +634,11 @@ def largest(these, those):
     )
 
 
-# arrays that are changed between two runs, and features that are called by hand
+# arrays changed between two runs, and features called by hand
 
 
 def changing(declare, second=None):
-    """Return what declares a feature, with the array that is changed, on a rod or two in line."""
+    """Return a scene of one rod or two in line, with a feature that uses the changed array."""
 
     def scene(lib, sim, array):
         rods = [make_rod(lib), make_rod(lib, start=(0.001, 0.0, 0.3), n=8)]
@@ -687,7 +687,7 @@ def floor(lib, sim, rods, array):
 
 
 def moved_floor(lib, sim, rods, array):
-    """The attribute given another array, not another value in the same."""
+    """The attribute is set to another array, instead of changing the same one."""
     floor(lib, sim, rods, np.array([0.0, -0.1, 0.0]))
     array.moves = lambda: setattr(sim[2], "origin", np.array([[0.0], [-0.001], [0.0]]))
 
@@ -710,11 +710,11 @@ ARRAYS = {
     "plane": (changing(floor), np.array([0.0, -0.0101, 0.0])),
     "attribute of a plane": (changing(moved_floor), np.zeros(3)),
 }
-"""A scene, and the array that it is given"""
+"""Scenes and their arrays"""
 
 
 @pytest.mark.parametrize(("scene", "given"), ARRAYS.values(), ids=ARRAYS.keys())
-def test_arrays_that_change_between_runs_are_followed_where_theirs_are(scene, given):
+def test_changes_of_arrays_between_runs_take_effect_as_in_pyelastica(scene, given):
     ends = []
     for lib in (theirs, ours):
         sim, array = simulator(lib), given.copy().view(Mover)
@@ -790,7 +790,7 @@ def over_plane(lib):
 
 @pytest.mark.parametrize(("name", "law"), HANDED.values(), ids=HANDED.keys())
 def test_contact_by_hand(name, law):
-    """After another load, which planes answer to."""
+    """After another load, which planes balance."""
     found = []
     for lib in (theirs, ours):
         sim = simulator(lib)
@@ -819,7 +819,7 @@ def test_contact_by_hand(name, law):
 
 @pytest.fixture(autouse=True)
 def straight_rods_need_no_constraints():
-    """Undo what a ring of PyElastica leaves behind: its list of the modules that rods need is the class's own."""
+    """Undo a side effect of rings in PyElastica: the list of modules that rods need is a class attribute."""
     yield
     theirs.CosseratRod.REQUISITE_MODULES.clear()
 
@@ -840,14 +840,14 @@ def damped_ring(lib, sim):
     rods = [*ring(lib, sim), make_rod(lib)]
     sim.append(rods[1])
     sim.connect(rods[0], rods[1], 4, 0).using(lib.FixedJoint, k=50.0, nu=0.01, kt=0.01)
-    # of higher orders, theirs has a seam
+    # at higher orders, PyElastica's has a seam
     sim.dampen(rods[0]).using(lib.LaplaceDissipationFilter, filter_order=1)
     sim.dampen(rods[0]).using(lib.AnalyticalLinearDamper, uniform_damping_constant=2.0, time_step=DT)
     return rods
 
 
 def oval(lib, n=16, **options):
-    """A ring on an ellipse of 0.2 m by 0.1 m, with the masses of nodes that ours has."""
+    """A ring on an ellipse of 0.2 m by 0.1 m, with our node masses."""
     angle = 2.0 * np.pi * np.arange(n) / n
     nodes = np.stack([0.1 * np.cos(angle), np.zeros(n), 0.05 * np.sin(angle)])
     edges = np.roll(nodes, -1, axis=1) - nodes
@@ -883,7 +883,7 @@ def ring_at_rest(lib, sim):
 
 
 def bent(lib, sim):
-    """A rod through nodes on an arc, at rest if straight."""
+    """A rod through nodes on an arc, straight at rest."""
     angle = np.linspace(0.0, 1.0, N + 1)
     nodes = 0.3 * np.stack([np.zeros(N + 1), 1.0 - np.cos(angle), np.sin(angle)])
     tangents = np.diff(nodes, axis=1)
@@ -902,8 +902,8 @@ def test_ring(scene):
     test_trajectory(scene)
 
 
-def test_a_ring_is_at_rest_as_it_is_at_finalize():
-    """Unless it has a curvature at rest, or is given one later; open rods through given nodes straighten."""
+def test_the_rest_strain_of_a_ring_is_that_at_finalize():
+    """Unless a rest curvature is given, also later; open rods through given nodes straighten."""
     sim = simulator(ours)
     rods = ring_at_rest(ours, sim)
     rods.append(oval(ours, rest_kappa=np.full((3, 16), 1e-3)))
@@ -920,8 +920,8 @@ def test_a_ring_is_at_rest_as_it_is_at_finalize():
     assert rods[0].compute_bending_energy() > 1e-4
 
 
-def test_nodes_of_a_ring_have_half_of_the_mass_of_each_element_beside_them():
-    """Theirs have all of the one after them, which puts the centre of mass half an element off."""
+def test_nodes_of_a_ring_have_half_the_mass_of_each_adjacent_element():
+    """PyElastica's have all of the next element's, which shifts the centre of mass by half an element."""
     density = np.linspace(500.0, 1500.0, 16)
     rods = [
         lib.CosseratRod.ring_rod(16, np.zeros(3), Z, Y, 0.5, 0.01, density, youngs_modulus=1e5, shear_modulus=4e4)
@@ -939,8 +939,8 @@ class Untouched(ours.NoContact):
         pass
 
 
-def test_rods_that_are_joined_and_touch(monkeypatch):
-    """The scene of the benchmark, PyElastica's contact corrected."""
+def test_joined_and_touching_rods(monkeypatch):
+    """The scene of the benchmark, with PyElastica's contact corrected."""
     monkeypatch.syspath_prepend(str(Path(__file__).parents[2] / "scripts"))
     import many_rods
 

@@ -1,4 +1,4 @@
-"""The time step that joints, contacts, planes and drag allow: sound below it, and warned of and unstable above it."""
+"""The stable time step with joints, contacts, planes and drag: above it there is a warning and the run is unstable."""
 
 import warnings
 
@@ -22,7 +22,7 @@ class Simulator(
 
 
 def make_rod(start=(0.0, 0.0, 0.0), direction=Z, normal=Y, n=8, **options):
-    """A rod so soft that it hardly limits the time step."""
+    """A rod so soft that it does not limit the time step."""
     given = dict(youngs_modulus=1e2, shear_modulus=4e1)
     return ea.CosseratRod.straight_rod(n, start, direction, normal, 0.4, 0.02, 1000.0, **{**given, **options})
 
@@ -89,11 +89,11 @@ SCENES = {
     "viscosity": (viscous, "viscosity of CosseratRod 0"),
     "viscosity of spin": (spinning, "viscosity of CosseratRod 0"),
 }
-"""What declares it, and what the warning calls it"""
+"""The declaration, and its name in the warning"""
 
 
 def largest_speed(declare, part):
-    """Return how fast what starts with velocities of 1 mm/s and 10 mrad/s gets, at a part of the stable time step."""
+    """Return the largest speed after a start at 1 mm/s and 10 mrad/s, at a fraction of the stable time step."""
     sim = Simulator()
     systems = declare(sim)
     sim.finalize()
@@ -113,7 +113,7 @@ def test_the_stable_time_step_of_a_simulator(declare, culprit):
         warnings.simplefilter("error")
         assert largest_speed(declare, 0.85) < 1.0
     with pytest.warns(RuntimeWarning, match=f"largest stable one of .*{culprit}"):
-        # a plane does not pull: a rod that its spring throws off comes back more slowly than it would swing
+        # a plane does not pull: a rod that rebounds from it returns more slowly than it would oscillate
         assert not largest_speed(declare, 2.0 if "plane" in culprit else 1.15) < 5.0
 
 
@@ -155,7 +155,7 @@ CONTACTS = {
 
 
 @pytest.mark.parametrize(("cls", "make", "law", "culprit"), CONTACTS.values(), ids=CONTACTS.keys())
-def test_contact_that_is_too_stiff_is_warned_of_by_name(cls, make, law, culprit):
+def test_too_stiff_contact_is_named_in_a_warning(cls, make, law, culprit):
     with pytest.warns(RuntimeWarning, match=f"largest stable one of .*{culprit}"):
         ea.integrate(ea.PositionVerlet(), pressed(cls, make, law), 1e-3, 1, progress_bar=False)
     soft = {name: 1e-3 if name in ("k", "nu") else 0.0 for name in law}
@@ -164,7 +164,7 @@ def test_contact_that_is_too_stiff_is_warned_of_by_name(cls, make, law, culprit)
         ea.integrate(ea.PositionVerlet(), pressed(cls, make, soft), 1e-3, 1, progress_bar=False)
 
 
-def test_the_warning_at_finalize_takes_in_joints():
+def test_the_warning_at_finalize_includes_joints():
     sim = Simulator()
     rod, _ = joined(ea.FreeJoint, k=1e6, nu=0.0)(sim)
     sim.dampen(rod).using(ea.AnalyticalLinearDamper, uniform_damping_constant=1.0, time_step=1e-3)
@@ -197,7 +197,7 @@ def test_the_warning_at_finalize_takes_in_joints():
         ),
     ],
 )
-def test_models_of_environments_are_refused_if_their_contacts_are_too_stiff(options, culprit):
+def test_models_of_environments_reject_too_stiff_contacts(options, culprit):
     rod = Rod.straight(
         8,
         start=(0, 0, 0),
@@ -215,6 +215,6 @@ def test_models_of_environments_are_refused_if_their_contacts_are_too_stiff(opti
 
 
 @pytest.mark.parametrize("make", [snake, octopus])
-def test_the_bodies_as_they_are_are_allowed(make):
+def test_shipped_bodies_are_stable(make):
     body = make()
     require_stable_model(body.model, body.sim_dt)

@@ -1,4 +1,4 @@
-"""Every name that the documentation of 0.2.x and 1.0 gives, by its path, under `elastica_gym.cosserat`."""
+"""Every name documented for 0.2.x and 1.0 exists under its path in `elastica_gym.cosserat`."""
 
 import importlib
 import inspect
@@ -87,11 +87,11 @@ def test_importable(path, name):
         assert getattr(library, name) is getattr(module, name)
 
 
-def test_all_that_is_exported_exists():
+def test_all_exported_names_exist():
     assert [name for name in library.__all__ if not hasattr(library, name)] == []
 
 
-# names of 0.2.2 and 0.3.3 that 1.0.0 has no more
+# names of 0.2.2 and 0.3.3 that 1.0.0 lacks
 OLDER = """
 _calculus: _get_zero_array
 _elastica_numpy: _elastica_numpy
@@ -145,21 +145,21 @@ wrappers.memory_block: construct_memory_block_structures
 
 
 def modules_of(package):
-    """Return the modules of a package by their paths in it."""
+    """Return the modules of a package by their relative paths."""
     found = {"": package}
     for info in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-        # this one of 1.0.0 cannot be imported: its class has no method resolution order
+        # this module of 1.0.0 cannot be imported: its class has no method resolution order
         if info.name != "elastica.experimental.interaction":
             found[info.name.removeprefix(f"{package.__name__}.")] = importlib.import_module(info.name)
     return found
 
 
 def names_of(module):
-    """Return the names that a module defines, and at the top what the package exports; no type variables."""
+    """Return the names that a module defines or the package exports, without type variables."""
     found = []
     for name, value in vars(module).items():
         is_own = getattr(value, "__module__", module.__name__) == module.__name__ or module.__name__ == "elastica"
-        # annotations are strings, unions and the like, which do not know where they were defined
+        # strings, unions and other annotations do not know where they were defined
         is_own &= module.__name__ == "elastica.typing" or name not in vars(importlib.import_module("elastica.typing"))
         is_helper = inspect.ismodule(value) or isinstance(value, typing.TypeVar) or name.startswith("__") or name == "_"
         if is_own and not is_helper and name not in {"Any", "logger", "TYPE_CHECKING"}:
@@ -182,7 +182,7 @@ def is_there_or_refused(path, name):
     return True
 
 
-def test_every_name_of_the_original_is_there_or_refused():
+def test_every_name_of_pyelastica_exists_or_has_a_stand_in():
     missing, n_walked = [], 0
     for path, module in modules_of(pytest.importorskip("elastica")).items():
         for name in names_of(module):
@@ -195,12 +195,12 @@ def test_every_name_of_the_original_is_there_or_refused():
     assert n_walked > 250
 
 
-def test_every_public_method_of_the_original_is_there_or_refused():
+def test_every_public_method_of_pyelastica_exists_or_has_a_stand_in():
     missing, n_walked = [], 0
     for path, module in modules_of(pytest.importorskip("elastica")).items():
         for name in names_of(module):
             theirs, mine = getattr(module, name), getattr(ours(path), name)
-            # protocols are for annotations, and what is not offered has no methods
+            # protocols are for annotations, and stand-ins have no methods
             if not isinstance(theirs, type) or isinstance(mine, NotOffered) or getattr(theirs, "_is_protocol", False):
                 continue
             methods = [each for each, value in vars(theirs).items() if each[0] != "_" and callable(value)]
@@ -218,17 +218,17 @@ OLD = [
 
 
 @pytest.mark.parametrize(("path", "name"), OLD, ids=[f"{path}.{name}" for path, name in OLD])
-def test_every_name_of_older_ones_is_there_or_refused(path, name):
+def test_every_name_of_older_versions_exists_or_has_a_stand_in(path, name):
     assert is_there_or_refused(path, name)
 
 
 @pytest.mark.parametrize(("path", "name"), [(path, name) for path, names in TABLE.items() for name in names])
-def test_what_is_refused_is_not_there(path, name):
+def test_names_in_the_table_do_not_exist(path, name):
     assert isinstance(getattr(ours(path), name), NotOffered)
     assert not isinstance(1, getattr(ours(path), name))
 
 
-def test_refused_methods_say_what_to_use():
+def test_stand_ins_of_methods_name_a_replacement():
     class Simulator(library.BaseSystemCollection):
         pass
 
@@ -266,7 +266,7 @@ def test_simulators_of_older_scripts():
         pass
 
     sim = Simulator()
-    # nothing to close yet
+    # no callbacks yet
     sim.close()
     sim.override_allowed_types((library.Sphere,))
     with pytest.raises(TypeError, match="a simulator holds Sphere; not Plane"):

@@ -24,7 +24,7 @@ class Kept(ea.MyCallBack):
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory):
-    """A rod, a ring, a cylinder and a sphere that fall, with what was where, by other callbacks."""
+    """A falling rod, ring, cylinder and sphere, with their positions from other callbacks."""
     material = dict(density=1000.0, youngs_modulus=1e5)
     systems = [
         ea.CosseratRod.straight_rod(8, np.zeros(3), X, Y, 0.2, 0.01, **material),
@@ -105,7 +105,7 @@ raise SystemExit("the user's own error")
 """
 
 
-def test_written_when_python_ends(tmp_path):
+def test_written_when_python_exits(tmp_path):
     path = tmp_path / "end.rrd"
     done = subprocess.run([sys.executable, "-c", SCRIPT, path], capture_output=True, text=True, check=False)
     assert "the user's own error" in done.stderr

@@ -1,4 +1,4 @@
-"""Small products, rotations and knot theory, beside PyElastica 1.0.0."""
+"""Small products, rotations and knot theory, against PyElastica 1.0.0."""
 
 import copy
 import importlib
@@ -67,14 +67,14 @@ def test_same_numbers(mine, theirs, name, given):
     assert np.allclose(found, expected, atol=1e-12)
 
 
-# parts of contact, of fluids and of loads, and small things
+# parts of contact, fluids and loads, and small functions
 
 RADIUS, LENGTHS = np.abs(RNG.standard_normal((2, N - 1))) + 0.1
 MASS = np.abs(RNG.standard_normal(N)) + 0.1
 ROD_ONE, ROD_TWO = (A, RADIUS, LENGTHS), (B + 3.0, RADIUS, LENGTHS)
 TURN = np.ascontiguousarray(np.linalg.qr(M[..., 0])[0])[:, :, None]
 SEGMENT_PAIRS = np.random.default_rng(5).standard_normal((60, 4, 3))
-# some that are parallel, cross, or have their ends nearest
+# some that are parallel, cross, or are closest at their ends
 SEGMENT_PAIRS[:10, 3] = -0.7 * SEGMENT_PAIRS[:10, 1]
 SEGMENT_PAIRS[10:20, 2] += 5.0
 HELPERS = {
@@ -130,7 +130,7 @@ def test_helpers(module, name, given):
         assert np.shape(one) == np.shape(other) and np.allclose(one, other, atol=1e-12)
 
 
-def test_small_things():
+def test_small_functions():
     for utils in (their_utils, our_utils):
         spline, points, coefficients = utils._bspline(np.array([0.0, 1.0, -2.0, 3.0, 0.5, 0.0]), 2.0)
         assert np.allclose(points, [0.0, 2.0 / 3.0, 4.0 / 3.0, 2.0]) and coefficients.size == 6
@@ -143,7 +143,7 @@ def test_small_things():
         assert getattr(our_utils.Tolerance, name)() == getattr(their_utils.Tolerance, name)()
 
 
-def test_half_of_an_element_to_each_node():
+def test_half_of_an_element_on_each_node():
     nodes = {}
     for lib in ("elastica", "elastica_gym.cosserat"):
         nodes[lib] = B.copy()
@@ -152,7 +152,7 @@ def test_half_of_an_element_to_each_node():
 
 
 def test_stages_of_a_rod_in_place():
-    """All that theirs computes in a step, by the functions that scripts import from `rod.cosserat_rod`."""
+    """All results of PyElastica's step, by the functions that scripts import from `rod.cosserat_rod`."""
     rod = their_rods.CosseratRod.straight_rod(
         N, np.zeros(3), np.eye(3)[2], np.eye(3)[1], 0.3, 0.01, 1000.0, youngs_modulus=1e5
     )
@@ -247,7 +247,7 @@ def test_isqrt():
 def test_shapes_of_frames(shape):
     frames = np.random.default_rng(1).standard_normal(shape)
     if shape == (N, 9):
-        # theirs takes fewer than ten rows for something else
+        # PyElastica reads fewer than ten rows differently
         expected = frames.T.reshape(3, 3, N)
     else:
         expected = their_transformations.format_matrix_shape(frames.copy())
@@ -258,7 +258,7 @@ def test_shapes_of_frames(shape):
     assert np.allclose(transformations.rotate(frames, 0.3, axis), turned, atol=1e-12)
 
 
-# knot theory: polygons that come close to themselves nowhere, so that quadrature converges
+# knot theory: polygons that stay away from themselves, so that quadrature converges
 
 SEGMENTS = ["next_tangent", "end_to_end", "net_tangent"]
 TIMES = np.linspace(0.0, 0.93 * 2.0 * np.pi, 33)
@@ -277,7 +277,7 @@ LENGTH = 5.0
 
 
 def lengthened(line, kind, other=None):
-    """Return a curve, or one beside it, with segments at its ends along the directions of the curve's."""
+    """Return a curve, or an offset one, with segments added at its ends in the curve's end directions."""
     half = line.shape[1] // 2
     last = {
         "next_tangent": line[:, -1] - line[:, -2],
@@ -291,7 +291,7 @@ def lengthened(line, kind, other=None):
 
 
 def gauss_integral(one, two):
-    """Return the Gauss integral over 4 pi by quadrature; of a curve with itself without neighbouring segments."""
+    """Return the Gauss integral over 4 pi by quadrature; for a curve with itself, without neighbouring segments."""
     points, weights = np.polynomial.legendre.leggauss(60)
     points, weights = 0.5 * (points + 1.0), 0.5 * weights
     total = 0.0
@@ -306,7 +306,7 @@ def gauss_integral(one, two):
 
 
 def normals_of(line):
-    """Return normals that turn along a line, neither unit vectors nor across it."""
+    """Return normals that rotate along a line, neither unit vectors nor perpendicular to it."""
     return np.random.default_rng(2).standard_normal(line.shape)[:, 1:]
 
 
@@ -323,10 +323,10 @@ RIBBONS = {
     "coil": np.array([np.cos(2.0 * MIDDLE) * np.cos(MIDDLE), np.sin(2.0 * MIDDLE) * np.cos(MIDDLE), np.sin(MIDDLE)]),
     "trefoil": np.array([np.zeros(32), np.zeros(32), np.ones(32)]),
 }
-"""Normals of lines that turn from element to element by so little that a line beside keeps away from the first"""
+"""Normals that rotate slowly from element to element, so that the offset line stays away from the first"""
 
 
-# (the trefoil's end along its tangent comes too close to the line beside for quadrature)
+# (the trefoil's end along its tangent comes too close to the offset line for quadrature)
 @pytest.mark.parametrize(
     ("name", "kind"), [*(("coil", kind) for kind in SEGMENTS), ("trefoil", "end_to_end"), ("trefoil", "net_tangent")]
 )
@@ -335,19 +335,19 @@ def test_link_is_the_gauss_integral(name, kind):
     tangents = np.diff(line)
     across = normals - tangents * (normals * tangents).sum(axis=0) / (tangents**2).sum(axis=0)
     across *= 0.3 / np.linalg.norm(across, axis=0)
-    # the line beside it, where the element that ends at a node is turned to
+    # the offset line: a node uses the normal of the element that ends there
     beside = line + np.column_stack([across[:, 0], across])
     found = ours.compute_link(line[None], normals[None], np.full((1, 32), 0.3), LENGTH, kind)
     expected = gauss_integral(lengthened(line, kind), lengthened(line, kind, beside))
     assert found == pytest.approx(expected, abs=1e-4)
 
 
-def test_segments_on_one_line_have_no_writhe():
-    """The ends of a walk that is lengthened from end to end lie on a line: theirs adds rounding noise of up to 1."""
+def test_collinear_segments_have_no_writhe():
+    """The segments added end to end to a random walk are collinear: PyElastica adds rounding noise of up to 1."""
     for seed in range(200):
         walk = np.cumsum(np.random.default_rng(seed).standard_normal((3, 4)), axis=1)
         curve = lengthened(walk, "end_to_end")
-        # without the pair of the first and the last segment
+        # without the pair of first and last segment
         cut = [ours.compute_writhe(piece[None], LENGTH, None)[0] for piece in (curve[:, :-1], curve[:, 1:], walk)]
         found = ours.compute_writhe(walk[None], LENGTH, "end_to_end")
         assert found == pytest.approx(cut[0] + cut[1] - cut[2], abs=1e-12)
@@ -355,8 +355,8 @@ def test_segments_on_one_line_have_no_writhe():
 
 @pytest.mark.parametrize("kind", ["next_tangent", "end_to_end"])
 @pytest.mark.parametrize("line", LINES.values(), ids=LINES.keys())
-def test_knot_theory_beside_theirs(line, kind):
-    """But for net_tangent, where theirs divides the sum over one half by one node too many."""
+def test_knot_theory_against_pyelastica(line, kind):
+    """Except net_tangent, where PyElastica divides the sum over one half by one node too many."""
     normals, radius = normals_of(line)[None], np.full((1, line.shape[1] - 1), 0.1)
     twist, local = ours.compute_twist(line[None], normals)
     their_twist, their_local = their_knots.compute_twist(line[None], normals)
@@ -369,7 +369,7 @@ def test_knot_theory_beside_theirs(line, kind):
 
 
 def test_link_is_twist_and_writhe():
-    """Of a thin ribbon, where it is open and its ends are added (Calugareanu 1961)."""
+    """For a thin open ribbon with added end segments (Calugareanu 1961)."""
     t = np.linspace(0.0, 4.0 * np.pi, 400)
     line = np.array([np.cos(t), np.sin(t), 0.2 * t])
     middle = 0.5 * (t[1:] + t[:-1])
@@ -379,7 +379,7 @@ def test_link_is_twist_and_writhe():
     assert link == pytest.approx(twist + writhe, abs=2e-2)
 
 
-def test_knot_theory_names_what_it_cannot_take():
+def test_errors_of_knot_theory():
     line, normals = LINES["walk"][None], normals_of(LINES["walk"])[None]
     with pytest.raises(ValueError, match=r"type_of_additional_segment must be one of .* not 'next_tangents'"):
         ours.compute_writhe(line, LENGTH, "next_tangents")

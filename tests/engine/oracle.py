@@ -1,6 +1,6 @@
-"""The same scene in PyElastica 1.0.0, built from our own descriptions of rods, planes, waves and cylinders.
+"""The same scene in PyElastica 1.0.0, built from our descriptions of rods, planes, waves and cylinders.
 
-Contact that docs/differences.md lists as different is corrected, by default: written once more, a pair at a time.
+Contact listed as different in docs/differences.md is corrected by default, by a pairwise implementation.
 """
 
 import itertools
@@ -19,15 +19,15 @@ from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 from .scenes import disturb, disturb_body, motion
 
 NO_RAMP = 1e-300
-"""A ramp as short as PyElastica allows stands for none [s]"""
+"""Shortest ramp that PyElastica allows, used for none [s]"""
 
 
 class _Simulator(ea.BaseSystemCollection, ea.Forcing, ea.Damping, ea.Contact):
-    """Only what the scenes need: every feature more would cost PyElastica time."""
+    """Only the features that the scenes need: each one costs PyElastica time."""
 
 
 class Twin:
-    """Rods and their surroundings in PyElastica, which step as ours do.
+    """Rods and their surroundings in PyElastica, with the same steps as ours.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Twin:
     planes, waves, gravity, cylinders, rod_contact
         As for `build_model`.
     corrected : bool
-        Whether contact, and the inertia of cylinders, are as ours.
+        Whether contact and the inertia of cylinders are corrected to ours.
     """
 
     def __init__(
@@ -115,7 +115,7 @@ class Twin:
                 )
 
     def hold(self, rod: int, couple: Array, bend_stiffness: Array) -> None:
-        """Hold a muscle couple at Voronoi points [N m], (3, n - 1), as the shift of curvature at rest that it is."""
+        """Hold a muscle couple at Voronoi points [N m], (3, n - 1), as an equivalent shift of rest curvature."""
         self.rods[rod].rest_kappa[:] -= couple / bend_stiffness
 
     def advance(self, n_steps: int) -> None:
@@ -126,7 +126,7 @@ class Twin:
         self.time = time
 
     def set_state(self, motions: Sequence[tuple[Array, Array, Array, Array]], time: float) -> None:
-        """Set positions, velocities, directors and angular velocities of rods and bodies, and time."""
+        """Set positions, velocities, directors and angular velocities of rods and bodies, and the time."""
         for mine, given in zip(self.motions, motions, strict=True):
             for array, values in zip(mine, given, strict=True):
                 array[:] = values
@@ -134,7 +134,7 @@ class Twin:
 
     @property
     def motions(self) -> list[tuple[Array, Array, Array, Array]]:
-        """Positions, velocities, directors and angular velocities, of each rod and then of each body."""
+        """Positions, velocities, directors and angular velocities of each rod, then of each body."""
         return [
             (each.position_collection, each.velocity_collection, each.director_collection, each.omega_collection)
             for each in (*self.rods, *self.bodies)
@@ -160,7 +160,7 @@ class SphereContact(ea.RodSphereContact):
 
 
 class RimContact(ea.CylinderPlaneContact):
-    """A cylinder on a plane, which meets it at three points of either rim: the lowest and 120 degrees from it."""
+    """A cylinder on a plane, in contact at three points of either rim: the lowest one and those at 120 degrees."""
 
     def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
         body, n = system_one, system_two.normal
@@ -181,7 +181,7 @@ class RimContact(ea.CylinderPlaneContact):
 
 
 class PairContact(ea.RodRodContact):
-    """A rod on another."""
+    """A rod on another rod."""
 
     def apply_contact(self, system_one: Any, system_two: Any, time: Any = 0.0) -> None:
         for i in range(system_one.n_elems):
@@ -252,16 +252,16 @@ def _rest_radii(rod: Any) -> Array:
 
 
 def _element(rod: Any, k: int) -> tuple[Array, Array, float]:
-    """Return where an element starts, its edge and its radius at rest."""
+    """Return the start, edge and rest radius of an element."""
     return rod.position_collection[:, k].copy(), rod.lengths[k] * rod.tangents[:, k], float(_rest_radii(rod)[k])
 
 
 def _overlap(
     a: Array, e: Array, r1: float, b: Array, f: Array, r2: float, c2: float
 ) -> tuple[float, Array, float, float] | None:
-    """Return how deep two segments overlap, n and where their closest points are, if they do.
+    """Return the overlap of two segments, the normal n and the closest points, if they overlap.
 
-    Closest points are the best of those inside and on the four borders of [0, 1] x [0, 1].
+    Closest points are the best of those inside and on the four edges of [0, 1] x [0, 1].
     """
     c1, between = CENTRING * r1**2, b - a
 
@@ -291,7 +291,7 @@ def _axis_velocity(rod: Any, k: int, s: float) -> Array:
 
 
 def _load(rod: Any, k: int, s: float, f: Array) -> None:
-    """Add a force on the point s of an element."""
+    """Add a force at the point s of an element."""
     rod.external_forces[:, k] += (1.0 - s) * f
     rod.external_forces[:, k + 1] += s * f
 
@@ -339,7 +339,7 @@ def _rod(rod: Rod) -> ea.CosseratRod:
 def both(
     rods: Sequence[Rod], dt: float, *, couple: Array | None = None, corrected: bool = True, **loads: Any
 ) -> tuple[Model, State, Control, Twin]:
-    """Return a scene of ours, at rest, and its twin; the first rod's muscles hold ``couple`` [N m], (3, n - 1)."""
+    """Return our scene at rest and its twin; the first rod's muscles hold ``couple`` [N m], (3, n - 1)."""
     model, twin = build_model(rods, **loads), Twin(rods, dt=dt, corrected=corrected, **loads)
     state, control = at_rest(model, rods, cylinders=loads.get("cylinders", ()))
     if couple is not None:
@@ -350,7 +350,7 @@ def both(
 
 
 def motions(model: Model, state: State) -> list[tuple[Array, Array, Array, Array]]:
-    """Return views of our motion, as `Twin.motions`."""
+    """Return views of our motion, in the form of `Twin.motions`."""
     bodies = [
         (
             state.body_x[0, b][:, None],
@@ -374,16 +374,16 @@ def distance(model: Model, state: State, twin: Twin) -> float:
 def worst_step(
     rods: Sequence[Rod], dt: float, n_states: int, *, couple: Array | None = None, **loads: Any
 ) -> tuple[float, int]:
-    """Return how much one step from random states differs, and in how many of them rods or bodies touched.
+    """Return the largest error of one step from random states, and the number of states with contact.
 
-    For v and w relative to their largest change, or to a tenth of the largest in all states where there is
-    hardly any; for x and Q absolute; the largest of all.
+    Errors of v and w are relative to their largest change, or to a tenth of the largest over all states if
+    that is larger; those of x and Q are absolute.
     """
     model, state, control, twin = both(rods, dt, couple=couple, **loads)
     rng = np.random.default_rng(0)
     differences, changes, n_touching = [], [], 0
     for number in range(n_states):
-        # sliding (in part, where the slip tolerance is large) or sticking
+        # sliding (partly, if the slip tolerance is large) or sticking
         speed = (1.0, 1e-9)[number % 2]
         for r, rod in enumerate(rods):
             disturb(rod, model, state, rng, speed=speed, number=r)

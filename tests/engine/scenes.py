@@ -1,4 +1,4 @@
-"""Rods and surroundings that the tests and the benchmark share."""
+"""Rods and surroundings shared by tests and benchmark."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +49,7 @@ def ground(static: float = 2.0, **options: float) -> Plane:
 
 
 def kinked(n: int = 40, **material: object) -> Rod:
-    """Return a rod that tapers to a third, with a kink of 0.6 rad in its middle at which it is at rest."""
+    """Return a rod that tapers to a third, with a kink of 0.6 rad in its middle at rest."""
     half = n // 2
     turned = np.array([0.0, np.sin(0.6), np.cos(0.6)])
     steps = np.where(np.arange(n) < half, np.array([0.0, 0.0, 1.0])[:, None], turned[:, None]) * 0.01
@@ -62,7 +62,7 @@ def kinked(n: int = 40, **material: object) -> Rod:
 
 
 def loop(n: int, *, size: float, gap: float, radius: float, **material: float) -> Rod:
-    """Return a rod at rest as a loop of this size, whose ends pass each other with their axes ``gap`` apart."""
+    """Return a rod at rest in a loop of a given size, whose ends pass each other with their axes ``gap`` apart."""
     t = np.linspace(-1.4, 1.4, 1001)
     curve = np.array([size * (t**2 - 1.0), 0.5 * gap * t, size * t * (t**2 - 1.0)])
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve), axis=0))])
@@ -82,14 +82,14 @@ ARMS_CONTACT = Contact(stiffness=1e4, damping=5.0, friction=0.4, slip_damping=20
 
 
 def arms(n: int = 120) -> Rod:
-    """Return two arms of 0.4 m, which a bend of 0.2 m joins at an angle of 70 degrees, on the ground."""
+    """Return two arms of 0.4 m on the ground, joined by a bend of 0.2 m at an angle of 70 degrees."""
     angle = np.interp((np.arange(n) + 0.5) / n, (0.4, 0.6), (-0.96, 0.96))
     edges = np.array([np.cos(angle), np.zeros(n), np.sin(angle)]) / n
     nodes = np.concatenate([np.zeros((3, 1)), np.cumsum(edges, axis=1)], axis=1)
     directors = np.zeros((3, 3, n))
     directors[0, 1], directors[2] = 1.0, edges * n
     directors[1] = np.cross(directors[2], directors[0], axis=0)
-    # at rest as it is: bending of each joint about d1, which is up
+    # rest curvature of the current shape: bending of each joint about d1, which is up
     rest_kappa = np.zeros((3, n - 1))
     rest_kappa[0] = -np.diff(angle) * n
     return Rod(
@@ -105,7 +105,7 @@ def arms(n: int = 120) -> Rod:
 
 
 def held(height: float = 0.0) -> Cylinder:
-    """Return an object that stands in the bend of the arms, touching it, ``height`` above the ground [m]."""
+    """Return an object standing in the bend of the arms in contact, ``height`` above the ground [m]."""
     rod = arms()
     middle, up = rod.n_elements // 2, np.array([0.0, 1.0, 0.0])
     inwards = np.cross(up, rod.directors[2, :, middle])
@@ -159,7 +159,7 @@ def rotations(vectors: Array) -> Array:
 
 
 def without_contact(model: Model) -> Model:
-    """Return a model whose rods touch neither cylinders nor each other."""
+    """Return a model without contact of rods with cylinders or each other."""
     none = type(model.cylinders)(*(column[:0] for column in model.cylinders))
     return model._replace(cylinders=none, rod_contact=model.rod_contact._replace(is_on=False))
 

@@ -1,4 +1,4 @@
-"""A batch is as many single environments, whoever computes them."""
+"""A batch equals single environments, whatever threads compute it."""
 
 import pickle
 from concurrent.futures import ThreadPoolExecutor
@@ -27,7 +27,7 @@ def batch(n_envs):
     return model, state, control
 
 
-def test_an_environment_of_a_batch_equals_it_alone():
+def test_an_environment_of_a_batch_equals_a_single_one():
     model, state, control = batch(5)
     start = [a.copy() for a in state]
     advance(model, state, control, 0, 5, TIME_STEP, 200)
@@ -42,7 +42,7 @@ def test_an_environment_of_a_batch_equals_it_alone():
 
 
 @pytest.mark.parametrize("n_threads", [2, 5])
-def test_threads_change_no_bit(n_threads):
+def test_threads_do_not_change_results(n_threads):
     one, many = batch(10), batch(10)
     advance(*one, 0, 10, TIME_STEP, 200)
     borders = np.linspace(0, 10, n_threads + 1).astype(int)
@@ -68,7 +68,7 @@ def test_a_team_advances_each_environment_once(n_threads):
         assert np.array_equal(a, b)
 
 
-def test_only_the_environments_asked_for_move():
+def test_only_selected_environments_move():
     model, state, control = batch(4)
     before = state.x.copy()
     advance(model, state, control, 1, 3, TIME_STEP, 10)
@@ -78,7 +78,7 @@ def test_only_the_environments_asked_for_move():
     assert state.time[1] == 0.1 + 10 * TIME_STEP
 
 
-def test_a_broken_environment_breaks_no_other():
+def test_divergence_of_an_environment_does_not_affect_others():
     whole, broken = batch(3), batch(3)
     motion(broken[0], broken[1], env=1)[1][0, 0] = np.nan
     for scene in (whole, broken):

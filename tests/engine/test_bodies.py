@@ -10,7 +10,7 @@ from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 G = 9.80665
 DT = 1e-4
 LENGTH, RADIUS, MASS = 0.6, 0.05, 4.0
-# far from everything, for a model needs one
+# far from everything, since a model needs a rod
 BYSTANDER = Rod.straight(
     2,
     start=(50.0, 50.0, 50.0),
@@ -42,19 +42,19 @@ def cylinder(**options: object) -> Cylinder:
 
 
 def scene(body: Cylinder, *, slope: float = 0.0, along: tuple[float, float] = (0.0, 1.0), ground: bool = True):
-    """Return a cylinder in gravity that is turned by ``slope`` [rad], downhill along (x, z)."""
+    """Return a cylinder under gravity tilted by ``slope`` [rad], downhill along (x, z)."""
     gravity = G * np.array([np.sin(slope) * along[0], -np.cos(slope), np.sin(slope) * along[1]])
     model = build_model([BYSTANDER], planes=[Plane()] if ground else [], gravity=gravity, cylinders=[body])
     return model, *at_rest(model, [BYSTANDER], cylinders=[body])
 
 
 def angular_momentum(model: Model, state: State) -> Array:
-    """Return that of the body about its centre, in the lab [N m s]."""
+    """Return the body's angular momentum about its centre, in the lab [N m s]."""
     return state.body_Q[0, 0].T @ (model.cylinders.inertia[0] * state.body_w[0, 0])
 
 
-def test_inertia_has_the_square_of_the_length():
-    # of a uniform cylinder, by summing slices: J = int (r^2/4 + z^2) dm
+def test_inertia_depends_on_the_square_of_the_length():
+    # uniform cylinder, by summing slices: J = int (r^2/4 + z^2) dm
     z = (np.arange(2000) + 0.5) / 2000 * LENGTH - 0.5 * LENGTH
     J = cylinder().inertia
     assert J[0] == pytest.approx(MASS * np.mean(0.25 * RADIUS**2 + z**2), rel=1e-6)
@@ -71,7 +71,7 @@ def test_free_fall_and_free_spin():
     fallen = t * np.array([1.0, 2.0 - 0.5 * G * t, -1.0])
     assert state.body_x[0, 0] == pytest.approx(start + fallen, abs=1e-9)
     np.testing.assert_allclose(angular_momentum(model, state), before, rtol=1e-3)
-    # Euler's equations of a symmetric top: the transverse part turns at w3 (J1 - J3)/J1
+    # Euler's equations of a symmetric top: the transverse part rotates at w3 (J1 - J3)/J1
     J = model.cylinders.inertia[0]
     angle = w[2] * (J[0] - J[2]) / J[0] * t
     c, s = np.cos(angle), np.sin(angle)
@@ -125,7 +125,7 @@ def test_stands_or_tips_over(share, stands):
 def test_lies_at_rest():
     model, state, control = scene(cylinder())
     advance(model, state, control, 0, 1, DT, 5000)
-    # two points bear the weight
+    # two points carry the weight
     assert state.body_x[0, 0, 1] == pytest.approx(RADIUS - 0.5 * MASS * G / 1e5, abs=1e-6)
     assert np.abs(state.body_v).max() < 1e-6
 
@@ -146,12 +146,12 @@ def test_ground_never_pulls():
         (dict(normal=(0.0, 0.0, 2.0)), "must be perpendicular to direction"),
     ],
 )
-def test_impossible_cylinders_are_named(options, message):
+def test_errors_of_cylinders(options, message):
     with pytest.raises(ValueError, match=message):
         cylinder(**options)
 
 
-def test_a_model_wants_its_cylinders():
+def test_a_model_requires_its_cylinders():
     model, *_ = scene(cylinder())
     with pytest.raises(ValueError, match="cylinders must be 1, as in the model, not 0"):
         at_rest(model, [BYSTANDER])

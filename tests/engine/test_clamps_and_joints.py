@@ -1,4 +1,4 @@
-"""Rods that are clamped, and rods that are jointed, in the engine: against theory, and against the library."""
+"""Clamped and jointed rods in the engine, against theory and against the library."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def straight(start=(0.0, 0.0, 0.0), n=N, **more):
 
 
 def test_a_clamped_rod_sags_as_a_cantilever():
-    """By w L^4 / (8 E I) at its tip, with w the weight per length; the clamp holds half an element."""
+    """Tip deflection w L^4 / (8 E I), with w the weight per length; the clamp holds half an element."""
     rod, g, n = straight(n=40, damping_rate=4.0), 0.05, 40
     model = build_model([rod], gravity=-g * Y, clamped=[0])
     state, control = at_rest(model, [rod])
@@ -30,7 +30,7 @@ def test_a_clamped_rod_sags_as_a_cantilever():
     area = np.pi * RADIUS**2
     expected = 1000.0 * area * g * LENGTH**4 / (8.0 * 1e6 * np.pi / 4.0 * RADIUS**4)
     assert -x[1, -1] == pytest.approx(expected * (1.0 - 0.5 / n) ** 4, rel=0.01)
-    # held to the bit
+    # held exactly
     np.testing.assert_array_equal(x[:, :1], base[0])
     np.testing.assert_array_equal(Q[..., 0], base[1])
     assert not v[:, 0].any() and not w[:, 0].any()
@@ -41,7 +41,7 @@ class Simulator(ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connecti
 
 
 def test_two_jointed_rods_swing_as_in_the_library():
-    """The first of them clamped, both under gravity."""
+    """The first one is clamped, both under gravity."""
     law = dict(stiffness=200.0, damping=0.05, turn_stiffness=0.5, turn_damping=1e-4)
     rods = [straight(), straight(start=(LENGTH, 0.0, 0.0))]
     model = build_model(rods, gravity=-9.81 * Y, joints=[Joint(rods=(0, 1), ends=(-1, 0), **law)], clamped=[0])
@@ -79,7 +79,7 @@ def test_a_stiff_joint_limits_the_time_step():
         (dict(joints=[Joint(rods=(0, 3), ends=(-1, 0), stiffness=1.0)]), "rods of a joint must be numbers .* not 3"),
     ],
 )
-def test_rods_that_do_not_exist_are_named(wrong, message):
+def test_missing_rods_are_named(wrong, message):
     with pytest.raises(ValueError, match=message):
         build_model([straight(), straight()], **wrong)
 

@@ -1,4 +1,4 @@
-"""Compiled kernels: kept between processes, compiled anew when their source changes, and vectorised."""
+"""Compiled kernels: cached between processes, recompiled when their source changes, and vectorised."""
 
 import os
 import shutil
@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 
-# an entry in one file that calls a stage's helper in another: small, so that it compiles at once
+# an entry in one file that calls a helper in another: small, so that it compiles quickly
 HELPER = "from ..jit.compiler import inline\n\n\n@inline\ndef value(x):\n    return x + {}\n"
 PROBE = "from ..jit.compiler import entry\nfrom .helper import value\n\n\n@entry\ndef probe(x):\n    return value(x)\n"
 RUN = "from elastica_gym.engine.kernels.probe import probe; print(probe(1.0))"
@@ -19,7 +19,7 @@ RUN = "from elastica_gym.engine.kernels.probe import probe; print(probe(1.0))"
 
 @pytest.fixture
 def copied(tmp_path):
-    """Copy the physics beside a small kernel, and return the folder that holds the package."""
+    """Copy the package and add a small kernel; return the folder that holds it."""
     package = tmp_path / "elastica_gym"
     without = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "elastica_gym" / "engine", package / "engine", ignore=without)
@@ -42,13 +42,13 @@ def start(folder, code, **variables):
 
 
 def run(folder, code=RUN, **variables):
-    """Return status, output and errors of a process."""
+    """Return status, stdout and stderr of a process."""
     process = start(folder, code, **variables)
     output, errors = process.communicate(timeout=120)
     return process.returncode, output.strip(), errors
 
 
-def test_kept_and_announced(copied):
+def test_cached_and_announced(copied):
     assert run(copied)[:2] == (0, "2.0")
     status, output, errors = run(copied)
     assert (status, output, errors) == (0, "2.0", "")
@@ -64,7 +64,7 @@ def test_changed_callee_in_another_file(copied):
 
 
 def test_entry_outside_the_physics(copied):
-    """An entry of another package is compiled anew when its own file changes."""
+    """An entry of another package is recompiled when its own file changes."""
     outside = copied / "elastica_gym" / "outside.py"
     text = "from elastica_gym.engine.jit.compiler import entry\n\n\n@entry\ndef probe(x):\n    return x * {}\n"
     code = "from elastica_gym.outside import probe; print(probe(1.0))"
@@ -89,7 +89,7 @@ def test_folder_that_cannot_be_written(copied):
 
 
 def test_home_that_cannot_be_written(copied):
-    """Then they are kept in the temporary folder."""
+    """Kernels are then cached in the temporary folder."""
     (copied / "file").write_text("")
     temporary = copied / "temporary"
     temporary.mkdir()
@@ -99,7 +99,7 @@ def test_home_that_cannot_be_written(copied):
 
 
 def test_disk_that_is_full(copied):
-    """Then the kernel works, and is not kept."""
+    """The kernel then works, but is not cached."""
     code = (
         "import tempfile; from numba.core import caching\n"
         "def full(*args): raise OSError(28, 'No space left on device')\n"
@@ -110,7 +110,7 @@ def test_disk_that_is_full(copied):
     assert "not kept" in errors and "No space left" in errors
 
 
-# what LLVM makes of the stages
+# LLVM's code of the stages
 
 ASSEMBLY = """
 import inspect, re, sys
@@ -139,7 +139,7 @@ for stage in (kinematics.kinematics, strains.stretch, strains.strains, curvature
 def test_stages_are_vectorised(tmp_path):
     features = llvmlite.binding.get_host_cpu_features()
     if not features.get("fma"):
-        pytest.skip("this CPU has no fused multiply-adds on vectors")
+        pytest.skip("this CPU has no vector fused multiply-add")
     environment = dict(os.environ, ELASTICA_GYM_CACHE_DIR=str(tmp_path), PYTHONPATH=str(ROOT))
     output = subprocess.run(
         [sys.executable, "-c", ASSEMBLY], env=environment, check=True, capture_output=True, text=True, timeout=300

@@ -1,6 +1,6 @@
-"""Rods on cylinders and on rods, which cross in the middle of elements: against PyElastica 1.0.0.
+"""Rods that cross cylinders and rods in the middle of elements, against PyElastica 1.0.0.
 
-There alone both put half of a force on each node of an element; elsewhere PyElastica's contact makes energy.
+Only there do both put half of a force on each node of an element; elsewhere PyElastica's contact gains energy.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from .scenes import loop, without_contact
 K, NU, MU, C = 1e3, 1e-3, 0.3, 2.0
 SMOOTH = Contact(stiffness=K, damping=NU)
 ROUGH = Contact(stiffness=K, damping=NU, friction=MU, slip_damping=C)
-# so soft that contact is all there is
+# so soft that only contact matters
 SOFT = dict(density=1000.0, youngs_modulus=1e-3, shear_modulus=1e-3)
 
 
@@ -28,7 +28,7 @@ def straight(n: int, start: tuple, direction: tuple, **material: float) -> Rod:
 
 
 def knot() -> Rod:
-    """Return a rod that crosses itself at a right angle, 0.03 m above."""
+    """Return a rod that crosses itself at a right angle, 0.03 m higher."""
     return loop(60, size=0.2, gap=0.03, radius=0.02, **SOFT)
 
 
@@ -59,7 +59,7 @@ def shake(model, state: State, rods, rng: np.random.Generator, size: float) -> N
 
 
 def contact_forces(model, state: State, control) -> Array:
-    """Return what contact adds to the nodal forces of a state as it stands: a step of no time computes them."""
+    """Return the nodal forces of contact in a state, computed by a step of zero duration."""
     advance(without_contact(model), state, control, 0, 1, 0.0, 1)
     internal = state.force[0].copy()
     advance(model, state, control, 0, 1, 0.0, 1)
@@ -92,13 +92,13 @@ def oracle():
 
 
 def oblique(rng: np.random.Generator) -> Array:
-    """Return a horizontal direction, not too near to the x-axis."""
+    """Return a horizontal direction, not too close to the x-axis."""
     turn = rng.uniform(0.9, 2.2)
     return np.array([np.cos(turn), 0.0, np.sin(turn)])
 
 
 @pytest.mark.parametrize("contact", [SMOOTH, ROUGH], ids=["smooth", "rough"])
-def test_rod_on_cylinder_is_the_oracles(oracle, contact):
+def test_rod_on_cylinder_agrees_with_the_oracle(oracle, contact):
     rng = np.random.default_rng(0)
     body, rods = object_in_the_way(contact), [straight(21, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))]
     model = build_model(rods, cylinders=[body])
@@ -111,7 +111,7 @@ def test_rod_on_cylinder_is_the_oracles(oracle, contact):
         ours = contact_forces(model, state, control)[:, nodes_of(model, 0)]
         start, radius, length, tangent, velocity = elements(model, state, 0)
         force, body_force, body_torque = np.zeros((3, 22)), np.zeros((3, 1)), np.zeros((3, 1))
-        # friction is of half a contact there, so its slip damping is half of ours
+        # PyElastica computes friction per half contact, so its slip damping is half of ours
         oracle._calculate_contact_forces_rod_cylinder(
             start,
             length * tangent,
@@ -140,7 +140,7 @@ def test_rod_on_cylinder_is_the_oracles(oracle, contact):
 
 
 def end_to_end(model, state) -> list[Array]:
-    """Return the first two rods as one, with a thin element far away between them."""
+    """Return the first two rods as one, joined by a thin element far away."""
     far = (np.full((3, 1), 1e6), np.full(1, 1e-9), np.ones(1), np.eye(3)[:, :1], np.zeros((3, 0)))
     return [
         np.concatenate(parts, axis=-1)
@@ -148,8 +148,8 @@ def end_to_end(model, state) -> list[Array]:
     ]
 
 
-def test_rod_on_rod_is_the_oracles(oracle):
-    # as self contact: between rods the oracle adds the loads that press them together, contact's own among them
+def test_rod_on_rod_agrees_with_the_oracle(oracle):
+    # as self contact: between rods the oracle adds the loads that press them together, including contact's own
     rng = np.random.default_rng(1)
     rods = [straight(n, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) for n in (15, 19)]
     model = build_model(rods, rod_contact=SMOOTH)
@@ -186,7 +186,7 @@ def test_order_of_the_sweep_does_not_matter():
     np.testing.assert_array_equal(contact_forces(model, state, control), first)
 
 
-def test_bodies_and_contacts_cost_no_memory_where_there_are_none():
+def test_models_without_bodies_and_contacts_allocate_nothing_for_them():
     model = build_model([knot()])
     state, _ = at_rest(model, [knot()])
     assert state.body_x.size == state.body_contact.size == state.order.size == 0

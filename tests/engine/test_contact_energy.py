@@ -1,4 +1,4 @@
-"""Contact keeps energy: its force is the gradient of its spring's energy, and what collides parts as fast."""
+"""Contact conserves energy: its force is the gradient of the spring's energy, and collisions are elastic."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -16,22 +16,22 @@ from elastica_gym.engine.surroundings import Contact, Cylinder
 from .scenes import energy, loop, motion
 
 R, N, SPEED = 1e-3, 10, 0.1
-"""Radius [m], elements and speed of approach [m/s] of what collides"""
+"""Radius [m], elements and approach speed [m/s] of colliding rods"""
 MATERIAL = dict(density=1000.0, youngs_modulus=3e5, shear_modulus=1e5)
 GAP = 0.02 * R
-"""Gap at the start [m]"""
+"""Initial gap [m]"""
 LOOK = 4
-"""Steps between two looks at what touches: rods that strike along their length part after some twenty"""
+"""Steps between checks of contact: rods that collide along their length separate after about twenty"""
 X, Y, Z = np.eye(3)
 
 ratios = st.sampled_from([0.3, 1.0, 3.0, 8.0])
 """Length over radius of elements"""
 places = st.floats(-4.99, 4.99)
-"""Where a rod touches, in elements from its middle"""
+"""Contact position on a rod, in elements from its middle"""
 
 
 class Collision(NamedTuple):
-    """Energy before, the largest and the least after they have parted [J], and how long they touched, in steps."""
+    """Energy before, largest and smallest energy after separation [J], and contact duration in steps."""
 
     before: float
     most: float
@@ -49,7 +49,7 @@ def rod_across(ratio: float, place: float, direction: Array, centre: Array) -> R
 
 
 def collide(rods: list[Rod], velocities: list[Array], law: Contact, dt: float, cylinders=()) -> Collision:
-    """Let rods and cylinders fly until they have parted."""
+    """Simulate rods and cylinders until they have separated."""
     model = build_model(rods, rod_contact=law, cylinders=cylinders)
     state, control = at_rest(model, rods, cylinders=cylinders)
     for number, velocity in enumerate(velocities):
@@ -77,7 +77,7 @@ def collide(rods: list[Rod], velocities: list[Array], law: Contact, dt: float, c
 
 
 def law_for(rod: Rod) -> tuple[Contact, float]:
-    """Return contact without friction and damping that half the stable step allows, and a quarter of that step."""
+    """Return contact without friction and damping, stable at half the stable step, and a quarter of that step."""
     dt = 0.5 * stable_time_step(rod)
     return Contact(stiffness=rod.nodal_mass[1] * (0.5 / dt) ** 2), 0.25 * dt
 
@@ -105,7 +105,7 @@ def test_two_rods(ratio, place, other, turn):
 
 @pytest.mark.parametrize("ratio", [0.3, 1.0, 3.0, 6.0, 8.0])
 @pytest.mark.parametrize("places", [(0.0, 0.0), (0.1, 0.1), (0.5, 0.5), (0.0, 0.5)], ids=str)
-def test_two_rods_at_nodes_and_beside_them(ratio, places):
+def test_two_rods_at_and_near_nodes(ratio, places):
     rods = [rod_across(ratio, places[0], X, np.zeros(3)), rod_across(ratio, places[1], Z, (2.0 * R + GAP) * Y)]
     law, dt = law_for(rods[0])
     require_kept(collide(rods, [np.zeros((3, 1)), -SPEED * Y[:, None]], law, dt))
@@ -114,11 +114,11 @@ def test_two_rods_at_nodes_and_beside_them(ratio, places):
 @several
 @given(ratio=ratios, place=places, along=st.floats(-1.2, 1.2), turn=st.floats(0.0, np.pi))
 def test_rod_and_cylinder(ratio, place, along, turn):
-    """Which it strikes between its ends and at the domes beyond them."""
+    """Contact between the cylinder's ends and at its caps."""
     rods = [rod_across(ratio, place, X, np.zeros(3))]
     law, dt = law_for(rods[0])
     r, half = 3.0 * R, 4.0 * R
-    # at a dome, the rod runs across the axis
+    # at a cap, the rod runs across the axis
     axis = Z if abs(along) > 1.0 else np.array([np.cos(turn), 0.0, np.sin(turn)])
     beyond = max(abs(along) - 1.0, 0.0) * half
     centre = np.array([0.0, np.sqrt((R + r) ** 2 - beyond**2) + GAP, 0.0]) - along * half * axis
@@ -157,12 +157,12 @@ def test_rod_and_sphere(ratio, place):
             + rod.compute_bending_energy()
             + rod.compute_shear_energy()
         )
-        # that of a body is an array of one, as in PyElastica
+        # a body's energy is an array of shape (1,), as in PyElastica
         return float(of_rod + np.sum(ball.compute_translational_energy() + ball.compute_rotational_energy()))
 
     before = total()
     ea.integrate(ea.PositionVerlet(), made, 30_000 * dt, 30_000, progress_bar=False)
-    # near its end the rod mostly turns, and passes on less than a tenth of its speed
+    # near its end the rod mostly rotates, and transfers less than a tenth of its speed
     assert ball.velocity_collection[1, 0] > 0.01 * SPEED
     assert total() == pytest.approx(before, rel=0.01)
 
@@ -174,7 +174,7 @@ class Simulator(ea.BaseSystemCollection, ea.Contact):
 @several
 @given(ratio=st.sampled_from([1.0, 3.0]), slide=st.floats(-0.5, 0.5))
 def test_a_rod_and_itself(ratio, slide):
-    """The ends of a loop pass each other, and one swings down on the other."""
+    """The ends of a loop pass each other, and one swings down onto the other."""
     n = 40
     size = 0.2 * n * ratio * R / 1.4
     rod = loop(n, size=size, gap=2.0 * R + 3.0 * GAP, radius=R, **MATERIAL)

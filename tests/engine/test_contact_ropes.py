@@ -1,4 +1,4 @@
-"""Ropes that cross, hang over a post and lie in a pile: contact that rests, against statics."""
+"""Static contact against theory: ropes that cross, hang over a post or lie in a pile."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ class Simulator(ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Contact,
 
 
 def add_rope(sim: Simulator, nodes: Array, radius: float, damping: float) -> ea.CosseratRod:
-    """Add a rope through nodes, with its weight, which is straight at rest."""
+    """Add a rope through nodes, straight at rest, with gravity."""
     edges = np.diff(nodes, axis=1)
     tangent = edges[:, 0] / np.linalg.norm(edges[:, 0])
     rope = ea.CosseratRod.straight_rod(
@@ -56,7 +56,7 @@ def run(sim: Simulator, dt: float, duration: float) -> None:
 
 
 def crossing(one: Array, two: Array) -> tuple[float, float]:
-    """Return where two polygons cross, seen from above, in elements from the middle of each."""
+    """Return the crossing of two polygons seen from above, in elements from the middle of each."""
     for i in range(one.shape[1] - 1):
         for j in range(two.shape[1] - 1):
             e, f = one[[0, 2], i + 1] - one[[0, 2], i], two[[0, 2], j + 1] - two[[0, 2], j]
@@ -70,10 +70,10 @@ def crossing(one: Array, two: Array) -> tuple[float, float]:
     ("n", "within"), [pytest.param(20, 0.2, id="at a node"), pytest.param(21, 0.55, id="in the middle of an element")]
 )
 def test_crossing_ropes_stay_where_statics_puts_them(n, within):
-    """By symmetry that is the middle; from that of an element the load slides to a node (docs/differences.md)."""
+    """By symmetry at the middle; if that is inside an element, the load slides to a node (docs/differences.md)."""
     s, span, radius, sim = np.linspace(-0.5, 0.5, n + 1), 0.3, 2e-3, Simulator()
     below = np.array([span * s, -0.05 * (1.0 - 4.0 * s**2), 0.0 * s])
-    # a little to one side at the start
+    # initially slightly to one side
     above = np.array([0.0 * s + 0.1 * span / n, -0.05 + 2.1 * radius - 0.12 * s**2, span * s])
     ropes = [add_rope(sim, nodes, radius, damping=5.0) for nodes in (below, above)]
     for rope in ropes:
@@ -92,15 +92,15 @@ def test_crossing_ropes_stay_where_statics_puts_them(n, within):
 # a rope over a post
 
 POST, ROPE, TAIL, N = 0.04, 1e-3, 0.04, 60
-"""Radii of post and rope, what hangs free on either side [m], and elements"""
+"""Radii of post and rope, free length on either side [m], and elements"""
 PULL = 0.03
-"""At the end that is pulled less [N]"""
+"""Force at the less loaded end [N]"""
 
 
 def slip_over_post(friction: float, wrap: float, ratio: float) -> float:
-    """Return the mean velocity along a rope over a post, 0.05 s after its ends are pulled in a ratio [m/s].
+    """Return the mean velocity along a rope over a post, 0.05 s after applying a force ratio at its ends [m/s].
 
-    Before, it settles under a lower ratio, strongly damped.
+    Before, it settles at a lower ratio with strong damping.
     """
     bend, along = POST + ROPE, np.array([np.sin(wrap), np.cos(wrap), 0.0])
     s = np.linspace(0.0, wrap * bend + 2.0 * TAIL, N + 1) - TAIL
@@ -151,7 +151,7 @@ def slip_over_post(friction: float, wrap: float, ratio: float) -> float:
 
 @pytest.mark.parametrize(("friction", "wrap"), [(0.2, np.pi), (0.3, 0.5 * np.pi), (0.1, 1.5 * np.pi)])
 def test_a_rope_over_a_post_holds_up_to_the_capstan_ratio(friction, wrap):
-    """Which creeps by Coulomb's bound over the slip damping while it holds, and beyond gets faster and faster."""
+    """Below it, the rope creeps at Coulomb's bound over the slip damping; above it, the rope accelerates."""
     held, slipping = (slip_over_post(friction, wrap, share * np.exp(friction * wrap)) for share in (0.95, 1.05))
     assert 0.0 < held < 0.03
     assert slipping > 0.12
@@ -162,7 +162,7 @@ def test_a_rope_over_a_post_holds_up_to_the_capstan_ratio(friction, wrap):
 
 @pytest.mark.parametrize(("stiffness", "damping"), [(0.05, 0.05), (0.25, 0.1), (0.25, 0.2)])
 def test_a_pile_of_ropes_comes_to_rest(stiffness, damping):
-    """Twenty, dropped on each other; stiffness and damping relative to a node's mass over the step, squared or not."""
+    """Twenty dropped ropes; stiffness and damping are relative to m/dt^2 and m/dt of a node."""
     rng, n, radius, length, sim = np.random.default_rng(0), 12, 3e-3, 0.12, Simulator()
     ropes = []
     for number in range(20):

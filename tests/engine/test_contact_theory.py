@@ -1,4 +1,4 @@
-"""Contact against what theory says: action and reaction, what is conserved, and what the broad phase costs."""
+"""Contact against theory: action and reaction, conservation laws, and the cost of the broad phase."""
 
 import numba
 import numpy as np
@@ -12,7 +12,7 @@ from elastica_gym.engine.surroundings import Contact, Cylinder, Plane
 
 from .scenes import disturb, disturb_body, loop, motion, rotations, without_contact
 
-# so soft that contact is all there is
+# so soft that only contact matters
 SOFT = dict(density=1000.0, youngs_modulus=1e-3, shear_modulus=1e-3)
 
 seeds = st.integers(0, 2**32 - 1)
@@ -32,7 +32,7 @@ def direction(rng: np.random.Generator) -> Array:
 
 
 def rod_through(point: Array, rng: np.random.Generator, n: int = 12, radius: float = 0.02, length: float = 0.5) -> Rod:
-    """Return a straight rod in any direction, somewhere along which the point lies."""
+    """Return a straight rod in a random direction through a point."""
     along = direction(rng)
     start = point - rng.uniform(0.1, 0.9) * length * along
     normal = np.cross(along, direction(rng))
@@ -55,9 +55,9 @@ def cylinder_through(point: Array, law: Contact, rng: np.random.Generator) -> Cy
 
 
 def contact_loads(model: Model, state: State, control) -> tuple[Array, Array, float]:
-    """Return the sum of contact's loads on rods and bodies, force and moment about the origin, and their size.
+    """Return the total force and moment about the origin of contact on rods and bodies, and their size.
 
-    A step of no time computes loads; those without contact, which are small, are taken off.
+    A step of zero duration computes the loads; the small loads without contact are subtracted.
     """
     advance(without_contact(model), state, control, 0, 1, 0.0, 1)
     internal, internal_torque = state.force[0].copy(), state.torque[0].copy()
@@ -82,7 +82,7 @@ def shake(rods, model: Model, state: State, rng: np.random.Generator, cylinders=
     for number, rod in enumerate(rods):
         disturb(rod, model, state, rng, number=number)
         Q = motion(model, state, rod=number)[2]
-        # directors that have turned away from the tangent, too
+        # also directors not aligned with the tangent
         Q[:] = np.einsum("kij,jlk->ilk", rotations(0.5 * rng.standard_normal((rod.n_elements, 3))), Q.copy())
     for number, cylinder in enumerate(cylinders):
         disturb_body(cylinder, state, rng, number=number)
@@ -91,7 +91,7 @@ def shake(rods, model: Model, state: State, rng: np.random.Generator, cylinders=
 
 @many
 @given(seed=seeds, law=laws)
-def test_rod_and_cylinder_act_and_react(seed, law):
+def test_action_and_reaction_of_rod_and_cylinder(seed, law):
     rng = np.random.default_rng(seed)
     point = rng.uniform(-0.3, 0.3, 3)
     rods = [rod_through(point + 0.03 * direction(rng), rng)]
@@ -100,14 +100,14 @@ def test_rod_and_cylinder_act_and_react(seed, law):
     state, control = at_rest(model, rods, cylinders=cylinders)
     shake(rods, model, state, rng, cylinders)
     require_balance(model, state, control)
-    # what elements feel is what the cylinder is pushed with, friction aside
+    # apart from friction, the forces on elements balance the force on the cylinder
     pushes = np.abs(state.body_force[0, 0])
     assert state.body_touch[0].sum() * np.sqrt(1.0 + law.friction**2) * (1.0 + 1e-9) > np.linalg.norm(pushes)
 
 
 @many
 @given(seed=seeds, law=laws)
-def test_two_rods_act_and_react(seed, law):
+def test_action_and_reaction_of_two_rods(seed, law):
     rng = np.random.default_rng(seed)
     point = rng.uniform(-0.3, 0.3, 3)
     rods = [rod_through(point, rng), rod_through(point + 0.02 * direction(rng), rng, n=9, radius=0.03)]
@@ -119,7 +119,7 @@ def test_two_rods_act_and_react(seed, law):
 
 @many
 @given(seed=seeds, law=laws, gap=st.floats(0.005, 0.035))
-def test_a_rod_acts_and_reacts_on_itself(seed, law, gap):
+def test_action_and_reaction_of_a_rod_with_itself(seed, law, gap):
     rng = np.random.default_rng(seed)
     rods = [loop(40, size=0.2, gap=gap, radius=0.02, **SOFT)]
     model = build_model(rods, rod_contact=law)
@@ -130,7 +130,7 @@ def test_a_rod_acts_and_reacts_on_itself(seed, law, gap):
 
 @many
 @given(seed=seeds, friction=st.floats(0.0, 2.0), damping=st.floats(0.0, 1e3))
-def test_what_the_ground_does_to_a_cylinder_is_within_coulombs_cone(seed, friction, damping):
+def test_ground_reaction_on_a_cylinder_is_within_the_friction_cone(seed, friction, damping):
     rng = np.random.default_rng(seed)
     along = direction(rng)
     body = Cylinder(
@@ -151,19 +151,19 @@ def test_what_the_ground_does_to_a_cylinder_is_within_coulombs_cone(seed, fricti
     shake(rods, model, state, rng, [body])
     x, Q = state.body_x[0, 0].copy(), state.body_Q[0, 0].copy()
     h = 1e-4
-    # to where the loads act, in the middle of the step
+    # move to the middle of the step, where loads are computed
     x += 0.5 * h * state.body_v[0, 0]
     Q = rotations(-0.5 * h * state.body_w[0])[0] @ Q
     advance(model, state, control, 0, 1, h, 1)
     N, rubbing, point = (state.body_contact[0, 0][:, part] for part in (0, slice(1, 4), slice(4, 7)))
     assert (N >= 0.0).all() and (np.abs(rubbing[:, 1]) < 1e-9).all()
-    # squares of subnormal forces are nought, so a tiny force has a part of no size
+    # squares of subnormal forces underflow to zero
     assert (np.linalg.norm(rubbing, axis=1) <= friction * N * (1.0 + 1e-9) + 1e-100).all()
     each = rubbing + N[:, None] * [0.0, 1.0, 0.0]
     size = 1e-12 * (1.0 + np.abs(each).sum())
     np.testing.assert_allclose(state.body_force[0, 0], each.sum(axis=0), atol=size)
     np.testing.assert_allclose(state.body_torque[0, 0], Q @ np.cross(point, each).sum(axis=0), atol=size)
-    # pushed only where it is in the ground
+    # forces act only at points in the ground
     assert ((x + point)[N > 0.0, 1] < 1e-12).all()
 
 
@@ -182,7 +182,7 @@ def momenta(model: Model, state: State) -> tuple[Array, Array]:
 
 
 def collide(dt: float) -> tuple[Array, Array, float]:
-    """Return by how much momentum and angular momentum change as an arm strikes a free cylinder, and how hard."""
+    """Return the changes of momentum and angular momentum as an arm strikes a free cylinder, and the largest force."""
     law = Contact(stiffness=1e4, damping=2.0, friction=0.4, slip_damping=5.0)
     arm = Rod.straight(
         20,
@@ -219,18 +219,17 @@ def collide(dt: float) -> tuple[Array, Array, float]:
     return linear, angular, hardest
 
 
-def test_arm_and_object_together_keep_their_momentum():
+def test_arm_and_object_conserve_their_total_momentum():
     linear, angular, hardest = collide(5e-5)
     assert hardest > 10.0
     assert linear < 1e-12
-    # loads conserve this one as exactly; velocities of rotation, in the frame that turns with them, are kicked to
-    # first order
+    # loads conserve angular momentum equally well, but kicks of angular velocity in the rotating frame are first order
     assert angular < 1e-6
     assert collide(2.5e-5)[1] < 0.55 * angular
 
 
 def coil(n: int) -> Rod:
-    """Return a rod wound as a spring, each turn 1 cm from the next: what is near does not depend on its length."""
+    """Return a coiled rod with turns 1 cm apart: the number of neighbours does not depend on its length."""
     t = np.arange(n + 1) * 0.2
     nodes = np.array([0.1 * np.cos(t), 0.1 * np.sin(t), 0.03 * t / (2.0 * np.pi)])
     return Rod.through(nodes, normal=(0.0, 0.0, 1.0), radius=np.full(n, 0.01), **SOFT)
@@ -258,8 +257,8 @@ def test_pairs_of_the_broad_phase_grow_with_the_rod():
         assert long < 0.15 * 800 * 799 / 2
 
 
-def test_listing_anew_changes_nothing():
-    """A list that is old and one that is new hold different pairs, and give the same bits."""
+def test_rebuilding_the_neighbour_list_changes_nothing():
+    """An old and a new list hold different pairs, but give bitwise the same result."""
     rod = coil(80)
     law = Contact(stiffness=50.0, friction=0.3, slip_damping=1e-3)
     model = build_model([rod], rod_contact=law, gravity=(0.0, 0.0, -1.0))
@@ -277,7 +276,7 @@ def test_listing_anew_changes_nothing():
         np.testing.assert_array_equal(old, new)
 
 
-def test_more_pairs_than_there_is_room_for():
+def test_more_pairs_than_fit_the_list():
     rod = coil(80)
     model = build_model([rod], rod_contact=Contact(stiffness=50.0))
     state, control = at_rest(model, [rod])

@@ -1,4 +1,4 @@
-"""The ledger of work: it adds up, and it finds what gives energy from nothing."""
+"""The work ledger: it adds up, and it finds spurious sources of energy."""
 
 import numpy as np
 import pytest
@@ -72,12 +72,12 @@ def test_changes_of_energy_are_the_sum_of_works():
         assert work[kind][0] * (1 if kind == "muscles" else -1) > 1e-6, kind
     now, start = energy(model, state, control), ledger.start
     kinetic = now.translational + now.rotational - start.translational - start.rotational
-    # spin whose section changes is the one thing that a drift changes the kinetic energy by
+    # a drift changes kinetic energy only through spin with a changing section
     assert kinetic == pytest.approx(sum(work.values()), abs=2e-3 * work["muscles"][0])
     assert now.gravitational - start.gravitational == pytest.approx(-work["gravity"], rel=1e-3)
 
 
-def test_the_ledger_advances_to_the_bits_of_single_steps():
+def test_the_ledger_is_bitwise_the_same_as_single_steps():
     rod = arm(height=0.03)
     model = build_model([rod], planes=[Plane(stiffness=1e3)], gravity=GRAVITY, is_balanced=True)
     (one, control), (two, _) = coiling(model, rod), coiling(model, rod)
@@ -90,7 +90,7 @@ def test_the_ledger_advances_to_the_bits_of_single_steps():
 
 
 def gain_of_a_cycle(is_reciprocal: bool, part: float) -> float:
-    """Return the energy that strains make from nothing, over the work of muscles that bend an arm and let it go."""
+    """Return the spurious energy of strains, over the work of muscles that bend and release an arm."""
     rod = arm(damping_rate=5.0)
     model = build_model([rod], activation_time=0.05, is_balanced=True, is_reciprocal=is_reciprocal)
     state, control = coiling(model, rod)
@@ -103,12 +103,12 @@ def gain_of_a_cycle(is_reciprocal: bool, part: float) -> float:
 
 
 @pytest.mark.parametrize("part", [0.8, 0.4])
-def test_the_reciprocal_tension_ends_the_gain_of_strong_bends(part):
+def test_reciprocal_tension_removes_the_energy_gain_of_strong_bends(part):
     assert abs(gain_of_a_cycle(is_reciprocal=False, part=part)) > 5e-3
     assert abs(gain_of_a_cycle(is_reciprocal=True, part=part)) < 1e-3
 
 
-def test_an_arm_that_muscles_hold_bent_does_not_flutter():
+def test_an_arm_held_bent_by_muscles_does_not_flutter():
     rod = arm(damping_rate=2.0)
     model = build_model([rod], activation_time=0.05, is_balanced=True, is_reciprocal=True)
     state, control = coiling(model, rod)

@@ -1,4 +1,4 @@
-"""What cannot be is refused at construction, with its name, value and bound."""
+"""Invalid arguments raise at construction, with name, value and bound."""
 
 import re
 
@@ -21,7 +21,7 @@ negative = st.floats(max_value=-1e-300) | st.sampled_from([np.nan, np.inf])
 
 
 def refused(make, name, value=None):
-    """Check that ``make`` raises a ValueError that tells the argument and its value."""
+    """Check that ``make`` raises a ValueError that names the argument and its value."""
     with pytest.raises(ValueError, match=re.escape(name)) as error:
         make()
     if value is not None:
@@ -53,7 +53,7 @@ def test_rod_needs_two_elements(n):
         ("start", (0, np.nan, 0)),
     ],
 )
-def test_rod_needs_a_place_and_directions(name, value):
+def test_rod_needs_a_position_and_directions(name, value):
     refused(lambda: Rod.straight(4, **{**STRAIGHT, name: value}), name)
 
 
@@ -77,7 +77,7 @@ def test_rod_checks_shapes_and_directors():
 
 
 @given(st.sampled_from(["stiffness", "damping", "surface_tolerance", "slip_tolerance"]), negative)
-def test_plane_needs_numbers_that_can_be(name, value):
+def test_plane_needs_valid_numbers(name, value):
     refused(lambda: Plane(**{name: value}), name, value)
 
 
@@ -99,7 +99,7 @@ def test_friction_is_not_negative(name, place, value):
         ("slip_tolerance", 0.0),
     ],
 )
-def test_plane_needs_a_place(name, value):
+def test_plane_needs_a_position(name, value):
     refused(lambda: Plane(**{name: value}), name)
 
 
@@ -126,7 +126,7 @@ def test_wave_needs_finite_numbers(name, value):
     refused(lambda: Wave(**{**given_, name: value}), name)
 
 
-def test_model_needs_rods_and_loads_that_can_be():
+def test_model_needs_rods_and_valid_loads():
     rod = snake(4)
     refused(lambda: build_model([]), "rods")
     refused(lambda: build_model([rod], gravity=(0, 1)), "gravity")

@@ -1,4 +1,4 @@
-"""Agreement with PyElastica 1.0.0, set up the same way; docs/differences.md lists what is left out, and why."""
+"""Agreement with PyElastica 1.0.0 in the same scenes; docs/differences.md lists exceptions and their reasons."""
 
 import numpy as np
 import pytest
@@ -72,7 +72,7 @@ def test_tapered_kinked_rod_on_the_ground():
     assert oracle.worst_step([rod], TIME_STEP, 100, gravity=GRAVITY, planes=[TILTED])[0] < 1e-11
 
 
-# contact, as corrected in the oracle
+# contact, corrected in the oracle
 
 ARM = dict(density=1000.0, youngs_modulus=2e4, shear_modulus=8e3, radius=0.025, damping_rate=2.0)
 LAW = Contact(stiffness=2e3, damping=2.0, friction=0.4, slip_damping=3.0)

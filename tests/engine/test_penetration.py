@@ -1,4 +1,4 @@
-"""Nothing passes through anything: an arm at full strength against itself, another, an object and the ground."""
+"""No tunnelling: an arm at full strength against itself, another arm, an object and the ground."""
 
 import numpy as np
 import pytest
@@ -11,11 +11,11 @@ from .scenes import GRAVITY
 
 N, LENGTH, BASE, TIP = 50, 0.4, 0.03, 0.025
 FULL = 2.0 * np.pi * 1.15 / LENGTH
-"""Curvature at which muscles at full strength hold a free arm: more than a turn [1/m]"""
+"""Curvature of a free arm at full muscle strength: more than a turn [1/m]"""
 STEP = 4e-5
 LAW = Contact(stiffness=1e5, damping=20.0, friction=0.4, slip_damping=50.0)
 LARGEST = 5e-3
-"""Penetration that is allowed [m]"""
+"""Allowed penetration [m]"""
 
 
 def arm(start: tuple, direction: tuple, normal: tuple) -> Rod:
@@ -34,7 +34,7 @@ def arm(start: tuple, direction: tuple, normal: tuple) -> Rod:
 
 
 def segments(model: Model, state: State, rod: int) -> tuple[Array, Array, Array, Array]:
-    """Return where the elements of a rod start, their edges, their radii and how far they are along the rod."""
+    """Return starts, edges, radii and arc lengths of a rod's elements."""
     start, n = int(model.first_slot[rod]), int(model.n_elements[rod])
     x = state.x[0][:, start : start + n + 1].T
     edge = np.diff(x, axis=0)
@@ -42,7 +42,7 @@ def segments(model: Model, state: State, rod: int) -> tuple[Array, Array, Array,
 
 
 def depth(a: Array, e: Array, r1: Array, b: Array, f: Array, r2: Array) -> Array:
-    """Return how deep segments overlap, pair by pair: the least distance over 33 points of each first one."""
+    """Return the pairwise overlaps of segments, by the smallest distance over 33 points of each first one."""
     s = np.linspace(0.0, 1.0, 33)[:, None, None]
     points = a + s * e
     t = np.clip(((points - b) * f).sum(axis=-1) / (f * f).sum(axis=-1), 0.0, 1.0)
@@ -50,7 +50,7 @@ def depth(a: Array, e: Array, r1: Array, b: Array, f: Array, r2: Array) -> Array
 
 
 def among_rods(model: Model, state: State) -> float:
-    """Return the deepest overlap of elements that are not near along the same rod."""
+    """Return the largest overlap of elements that are not close along the same rod."""
     deepest = 0.0
     for one in range(model.n_elements.size):
         for two in range(one, model.n_elements.size):
@@ -101,7 +101,7 @@ CASES = {
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize(("rods", "surroundings", "axis", "measure"), CASES.values(), ids=CASES.keys())
-def test_full_strength_does_not_get_through(rods, surroundings, axis, measure, sign):
+def test_full_strength_does_not_tunnel(rods, surroundings, axis, measure, sign):
     model = build_model(rods, activation_time=0.05, **surroundings)
     state, control = at_rest(model, rods, cylinders=surroundings.get("cylinders", ()))
     joints = slice(int(model.first_slot[0]), int(model.first_slot[0]) + N - 1)
@@ -112,7 +112,7 @@ def test_full_strength_does_not_get_through(rods, surroundings, axis, measure, s
         deepest = max(deepest, measure(model, state))
         touched = max(touched, float((state.body_touch + state.rod_touch + state.normal_force).max()))
     assert np.isfinite(state.x).all() and deepest > 1e-4
-    # it pressed, and hard
+    # there was strong contact
     turns = abs(state.kappa[0, axis] @ model.rest_voronoi_length) / (2.0 * np.pi)
     assert touched > 10.0 and turns > 0.7
     assert deepest < LARGEST

@@ -1,4 +1,4 @@
-"""What holds of every rod: energy, momentum, symmetry under rigid motion, action and reaction."""
+"""Properties of every rod: energy, momentum, symmetry under rigid motion, action and reaction."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -21,12 +21,12 @@ few = settings(max_examples=15)
 
 
 class Shape(NamedTuple):
-    """What a rod is made of, and how it moves."""
+    """Parameters of a rod and its motion."""
 
     n: int
     """Number of elements"""
     taper: float
-    """Radius at the end over that at the start"""
+    """Radius at the end over radius at the start"""
     slenderness: float
     """Radius over element length at the start"""
     young: float
@@ -36,9 +36,9 @@ class Shape(NamedTuple):
     density: float
     """[kg/m^3]"""
     speed: float
-    """Of nodes, over the speed of sound; so large are the strains that it makes"""
+    """Speed of nodes over the speed of sound, which is also the size of the resulting strains"""
     seed: int
-    """Of its curve and its velocities"""
+    """Seed of its curve and velocities"""
 
 
 shapes = st.builds(
@@ -55,7 +55,7 @@ shapes = st.builds(
 
 
 def described(shape: Shape, is_planar: bool = False) -> Rod:
-    """Return a rod at rest along a curve that wanders about +z, in space or in the plane of y and z."""
+    """Return a rod at rest along a random curve around +z, in space or in the yz-plane."""
     rng = np.random.default_rng(shape.seed)
     a, b = np.cumsum(rng.uniform(-0.3, 0.3, (2, shape.n)), axis=1) * [[not is_planar], [1.0]]
     a, b = np.tanh(a), np.tanh(b)
@@ -73,7 +73,7 @@ def described(shape: Shape, is_planar: bool = False) -> Rod:
 
 
 def documented(rod: Rod, **options: float) -> ea.CosseratRod:
-    """Return the same rod of the documented library."""
+    """Return the same rod in the library."""
     return ea.CosseratRod.straight_rod(
         rod.n_elements,
         rod.position[:, 0],
@@ -109,7 +109,7 @@ def moved(rod: ea.CosseratRod, shape: Shape) -> ea.CosseratRod:
 class Simulator(
     ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connections, ea.CallBacks, ea.Damping, ea.Contact
 ):
-    """Whatever is declared."""
+    """A simulator with all features used."""
 
 
 def simulator(*systems: object) -> Simulator:
@@ -126,7 +126,7 @@ def run(made: Simulator, dt: float, n_steps: int) -> None:
 # energy
 
 STEPS = st.sampled_from([0.4, 0.2, 0.1])
-"""Of what is stable. Position Verlet keeps an energy that is off by (omega dt)^2/8, with omega dt up to 2"""
+"""Fractions of the stable step. Position Verlet conserves energy up to (omega dt)^2/8, with omega dt up to 2"""
 
 
 def off_by_steps(part: float) -> float:
@@ -135,7 +135,7 @@ def off_by_steps(part: float) -> float:
 
 @few
 @given(shape=shapes, part=STEPS, is_balanced=st.booleans())
-def test_energy_of_a_free_rod_stays(shape, part, is_balanced):
+def test_energy_of_a_free_rod_is_conserved(shape, part, is_balanced):
     rod = described(shape, is_planar=True)
     model = build_model([rod], is_balanced=is_balanced)
     state, control = at_rest(model, [rod])
@@ -147,7 +147,7 @@ def test_energy_of_a_free_rod_stays(shape, part, is_balanced):
 
 
 def dampers(rod: ea.CosseratRod, rate: float) -> dict[str, dict[str, float]]:
-    """Return the arguments of each kind of damper that slows nodes about as fast as given [1/s]."""
+    """Return arguments of each kind of damper that slow nodes at about a given rate [1/s]."""
     inertia = rod.mass_second_moment_of_inertia[0, 0].mean()
     return {
         "none": {},
@@ -161,9 +161,9 @@ def dampers(rod: ea.CosseratRod, rate: float) -> dict[str, dict[str, float]]:
 
 
 def pair_in_a_field(shape: Shape, damper: str, is_joint_damped: bool) -> tuple[Simulator, list, Callable]:
-    """Return two rods with a joint between them, one clamped, with weight and a pull, and what tells their energy.
+    """Return two jointed rods, one clamped, under gravity and an end force, and a function of their energy.
 
-    That is the whole with the potentials of the loads, and a measure of its size [J].
+    It returns the total energy with the potentials of the loads, and its scale [J].
     """
     rate = np.sqrt(shape.young / shape.density) / LENGTH
     rod = described(shape)
@@ -209,7 +209,7 @@ def pair_in_a_field(shape: Shape, damper: str, is_joint_damped: bool) -> tuple[S
 def test_energy_does_not_grow_without_work(shape, part, damper, is_joint_damped):
     made, rods, energies = pair_in_a_field(shape, damper, is_joint_damped)
     start, size = energies()
-    # in space energy stays to second order of the angles between elements
+    # in space, energy is conserved to second order of the angles between elements
     off = off_by_steps(part) + shape.speed + 2e-3
     for _ in range(20):
         run(made, part * ea.stable_time_step(rods[0]), round(20 / part))
@@ -227,7 +227,7 @@ def test_energy_does_not_grow_without_work(shape, part, damper, is_joint_damped)
 
 @few
 @given(shape=shapes, is_balanced=st.booleans())
-def test_momentum_of_a_free_rod_stays(shape, is_balanced):
+def test_momentum_of_a_free_rod_is_conserved(shape, is_balanced):
     rod = described(shape)
     model = build_model([rod], is_balanced=is_balanced)
     state, control = at_rest(model, [rod])
@@ -240,7 +240,7 @@ def test_momentum_of_a_free_rod_stays(shape, is_balanced):
 
 @few
 @given(shape=shapes)
-def test_angular_momentum_of_a_free_rod_in_a_plane_stays(shape):
+def test_angular_momentum_of_a_free_rod_in_a_plane_is_conserved(shape):
     rod = described(shape, is_planar=True)
     model = build_model([rod])
     state, control = at_rest(model, [rod])
@@ -249,13 +249,13 @@ def test_angular_momentum_of_a_free_rod_in_a_plane_stays(shape):
     advance(model, state, control, 0, 1, 0.5 * stable_time_step(rod), 500)
     x, v, _, w = motion(model, state)
     size = (rod.nodal_mass * np.linalg.norm(x, axis=0) * np.linalg.norm(v, axis=0)).sum() + (rod.inertia * abs(w)).sum()
-    # a rod that stretches spins more slowly, and is kicked accordingly to first order of the time step
+    # spin changes with stretch, which kicks follow to first order of the time step
     assert abs(momenta(rod, model, state)[1][0] - before) < 0.1 * shape.speed * size
 
 
 @few
 @given(shape=shapes, joint=st.sampled_from(["free", "hinge", "fixed"]))
-def test_momentum_of_connected_rods_stays(shape, joint):
+def test_momentum_of_connected_rods_is_conserved(shape, joint):
     rods = [moved(documented(described(shape)), shape), documented(described(shape))]
     made = simulator(*rods)
     connect(made, rods, joint, 0, 0)
@@ -271,7 +271,7 @@ def test_momentum_of_connected_rods_stays(shape, joint):
 
 
 class LoadsCallBack(ea.CallBackBaseClass):
-    """Keeps what the last step has loaded systems with."""
+    """Stores the loads on systems of the last step."""
 
     def __init__(self, kept: dict) -> None:
         self.kept = kept
@@ -281,17 +281,17 @@ class LoadsCallBack(ea.CallBackBaseClass):
 
 
 def loads_on(made: Simulator, *systems: object) -> list[tuple[Array, Array]]:
-    """Return external forces, lab frame, and torques, material frame, on systems as they now are."""
+    """Return external forces, lab frame, and torques, material frame, on systems in their current state."""
     kept: dict = {}
     made.collect_diagnostics(...).using(LoadsCallBack, kept)
     made.finalize()
-    # so short that nothing moves
+    # a step so short that nothing moves
     run(made, 1e-14, 1)
     return kept["loads"]
 
 
 def require_balance(systems: tuple, loads: list[tuple[Array, Array]], has_levers: bool) -> None:
-    """Require that forces add up to nothing, and so do torques; with those of forces about the origin if they act."""
+    """Require that forces and torques add up to zero, torques with moments of forces if ``has_levers``."""
     forces = np.concatenate([force for force, _ in loads], axis=1)
     torques = np.concatenate(
         [
@@ -309,7 +309,7 @@ def require_balance(systems: tuple, loads: list[tuple[Array, Array]], has_levers
 
 
 def connect(made: Simulator, systems: list, joint: str, *indices: int) -> None:
-    """Declare a joint about as stiff as what it connects."""
+    """Declare a joint about as stiff as the systems it connects."""
     rod = systems[0]
     k, kt = (0.1 * matrix[2, 2, -1] * rod.n_elems / LENGTH for matrix in (rod.shear_matrix, rod.bend_matrix))
     nu = 0.01 * np.sqrt(k * rod.mass.min())
@@ -328,7 +328,7 @@ def connect(made: Simulator, systems: list, joint: str, *indices: int) -> None:
     is_body=st.booleans(),
     ends=st.tuples(st.integers(0, 2), st.integers(0, 2)),
 )
-def test_joints_act_and_react(shape, joint, is_body, ends):
+def test_action_and_reaction_of_joints(shape, joint, is_body, ends):
     rod = moved(documented(described(shape)), shape)
     if is_body:
         other = ea.Cylinder(0.1 * Y, X + 0.5 * Z, Y, 0.2, 0.05, 500.0)
@@ -342,7 +342,7 @@ def test_joints_act_and_react(shape, joint, is_body, ends):
 
 
 def overlapping(shape: Shape, kind: str) -> tuple[ea.CosseratRod, object, type]:
-    """Return a rod, what touches it in its middle, and how."""
+    """Return a rod, a system that overlaps its middle, and the contact class."""
     rod = moved(documented(described(shape)), shape)
     rng = np.random.default_rng([shape.seed, 2])
     middle, r = rod.position_collection[:, shape.n // 2], float(rod.radius.min())
@@ -366,7 +366,7 @@ def overlapping(shape: Shape, kind: str) -> tuple[ea.CosseratRod, object, type]:
 
 @settings(few, max_examples=30)
 @given(shape=shapes, kind=st.sampled_from(["rod", "cylinder", "sphere"]), friction=st.floats(0.0, 2.0))
-def test_what_touches_acts_and_reacts(shape, kind, friction):
+def test_action_and_reaction_of_contact(shape, kind, friction):
     rod, other, contact = overlapping(shape, kind)
     made = simulator(rod, other)
     rubbing = {} if kind == "rod" else dict(velocity_damping_coefficient=5.0, friction_coefficient=friction)
@@ -378,7 +378,7 @@ def test_what_touches_acts_and_reacts(shape, kind, friction):
 
 
 class Frame(NamedTuple):
-    """Where the whole scene is, and how it is turned."""
+    """Position and rotation of the whole scene."""
 
     turn: Array
     """(3, 3)"""
@@ -403,7 +403,7 @@ class Frame(NamedTuple):
 
 
 def add_loads(made: Simulator, rods: list, at: Frame, features: set[str]) -> None:
-    """Add what acts on the rods from outside."""
+    """Add external loads on the rods."""
     first, second = rods
     strength = float(first.shear_matrix[2, 2, -1])
     if "gravity" in features:
@@ -442,7 +442,7 @@ def add_loads(made: Simulator, rods: list, at: Frame, features: set[str]) -> Non
 
 
 def scene(shape: Shape, at: Frame, features: set[str]) -> tuple[Simulator, tuple]:
-    """Return two rods that touch where they start, a body that touches the first, and what they do, in a frame."""
+    """Return two rods in contact at their starts and a body in contact with the first, in a frame."""
     own = [described(shape), described(shape._replace(seed=shape.seed + 1))]
     own[1] = replace(own[1], position=own[1].position + 1.8 * own[0].radius[0] * X[:, None])
     rods = [documented(at.rod(rod)) for rod in own]
@@ -495,13 +495,13 @@ FEATURES = [
 def test_moving_the_scene_moves_the_motion(shape, features, seed):
     rng, found = np.random.default_rng(seed), []
     elsewhere = Frame(rotations(2.0 * rng.standard_normal((1, 3)))[0], rng.standard_normal(3))
-    # friction that changes between sticking and slipping amplifies rounding from step to step
+    # friction between sticking and slipping amplifies rounding from step to step
     n_steps = 10 if "plane" in features else 100
     for at in (Frame(np.eye(3), np.zeros(3)), elsewhere):
         made, systems = scene(shape, at, features)
         run(made, 0.5 * min(ea.stable_time_step(rod) for rod in systems[:2]), n_steps)
         places = np.concatenate([at.back(each.position_collection) for each in systems], axis=1)
         found.append((places, np.concatenate([at.turn.T @ each.velocity_collection for each in systems], axis=1)))
-    # rounding of places makes forces, the more so the stiffer the rod
+    # rounding of positions causes forces, larger for stiffer rods
     for here, there, rel in zip(*found, (1e-11, 1e-8), strict=True):
         assert np.abs(here - there).max() < rel * np.abs(here).max()

@@ -1,4 +1,4 @@
-"""What mechanics and mathematics say, whatever another program computes."""
+"""The physics against mechanics and mathematics, independent of other programs."""
 
 from dataclasses import replace
 
@@ -74,7 +74,7 @@ def test_series_of_rotations(a):
 
 @pytest.mark.parametrize("n_steps", [200_000, pytest.param(10_000_000, marks=pytest.mark.slow)])
 def test_directors_stay_orthonormal(n_steps):
-    # undamped, a snake is shaken to pieces within minutes
+    # an undamped snake diverges within minutes
     rod = snake(16, damping_rate=5.0)
     model = build_model([rod], gravity=GRAVITY, planes=[ground()], waves=[WAVE])
     state, control = at_rest(model, [rod])
@@ -89,7 +89,7 @@ def test_directors_stay_orthonormal(n_steps):
 
 
 def driven(rod, couples, **options):
-    """Return the change of a free rod's momenta in 0.05 s, in which its muscles get to ``couples``."""
+    """Return the change of a free rod's momenta in 0.05 s, while its muscles reach ``couples``."""
     model = build_model([rod], activation_time=0.02, **options)
     state, control = at_rest(model, [rod])
     start = int(model.first_slot[0])
@@ -108,7 +108,7 @@ def test_muscles_conserve_momentum():
     momentum, angular_momentum = driven(snake(), in_space, is_balanced=True)
     assert momentum < 1e-12
     assert angular_momentum < 1e-12
-    # in space, the documented model itself lets go of angular momentum in third order of the angle at a joint
+    # in space, the documented model conserves angular momentum only to third order of the angle at a joint
     momentum, documented = driven(snake(), in_space)
     assert momentum < 1e-12
     assert 1e2 * angular_momentum < documented < 1e-8
@@ -120,10 +120,10 @@ def test_muscles_conserve_momentum():
 @settings(max_examples=20)
 @given(st.integers(0, 2**32 - 1), st.booleans())
 def test_internal_loads_balance(seed, is_balanced):
-    """Whatever the shape and the muscles, internal forces are in balance, and so are torques.
+    """Internal forces and torques are in balance for any shape and muscles.
 
-    Torques in space only if the model is balanced: the documented one takes half of kappa x tau D for
-    the turn of tau from a joint to its elements, which is right to third order of the joint's angle.
+    Torques in space are so only if the model is balanced: the documented one uses half of kappa x tau D for
+    the rotation of tau from a joint to its elements, which is accurate to third order of the joint's angle.
     """
     rod, rng = kinked(rest_kappa=np.zeros((3, 39))), np.random.default_rng(seed)
     model = build_model([rod], is_balanced=is_balanced)
@@ -158,7 +158,7 @@ def test_energy_of_a_swinging_rod():
 
 
 def energy_change_of_a_coil(n, is_balanced):
-    """Return the largest relative change of energy as one turn of a coil, at rest as such, swings for 4 s."""
+    """Return the largest relative change of energy while one turn of a coil, coiled at rest, swings for 4 s."""
     s = np.linspace(0.0, 1.0, n + 1)
     nodes = np.array([0.1 * np.cos(2.0 * np.pi * s), 0.1 * np.sin(2.0 * np.pi * s), 0.3 * s])
     rod = Rod.through(
@@ -176,8 +176,8 @@ def energy_change_of_a_coil(n, is_balanced):
     return max(changes)
 
 
-def test_energy_of_a_rod_curved_in_space_stays_to_second_order_of_its_elements():
-    """Couples are carried from joints to elements in second order of the angle there; balanced, ten times better."""
+def test_energy_of_a_rod_curved_in_space_is_conserved_to_second_order_of_its_elements():
+    """Couples are transferred from joints to elements to second order of the angle; ten times better if balanced."""
     coarse, fine = (energy_change_of_a_coil(n, is_balanced=False) for n in (16, 32))
     assert 3.0 * fine < coarse < 2e-2
     assert energy_change_of_a_coil(16, is_balanced=True) < 0.2 * coarse
@@ -186,7 +186,7 @@ def test_energy_of_a_rod_curved_in_space_stays_to_second_order_of_its_elements()
 # symmetries
 
 
-def test_rods_of_a_model_do_not_feel_each_other():
+def test_rods_of_a_model_are_independent():
     rods = [snake(21), kinked(40), snake(8, damping_rate=5.0), kinked(10, viscosity=1e-4, torque_viscosity=1e-9)]
     loads = dict(gravity=GRAVITY, planes=[ground()])
     together = build_model(rods, **loads)
@@ -202,7 +202,7 @@ def test_rods_of_a_model_do_not_feel_each_other():
 
 @settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1))
-def test_turning_the_world_turns_the_motion(seed):
+def test_rotating_the_scene_rotates_the_motion(seed):
     rng = np.random.default_rng(seed)
     R, shift = rotations(2.0 * rng.standard_normal((1, 3)))[0], rng.standard_normal(3)
     rod = kinked(20)
@@ -261,7 +261,7 @@ def test_a_rod_on_an_incline_slides_above_the_static_coefficient(slope, slides):
     advance(model, state, control, 0, 1, 2e-5, 10_000)
     speed = motion(model, state)[1][2].mean()
     if slides:
-        # from (slope - mu_k) g, against the damping of 1 / s
+        # from (slope - mu_k) g, with a damping rate of 1 / s
         assert speed == pytest.approx((slope - 0.3) * g * (1.0 - np.exp(-0.2)), rel=0.05)
     else:
         assert abs(speed) < 1e-3
@@ -293,7 +293,7 @@ def test_axial_stretch():
 
 
 def test_viscosity_is_as_documented():
-    """Element force nu v l with v the mean of its nodes', half to each node; torque nu w l."""
+    """Element force nu v l with v the mean velocity of its nodes, half to each node; torque nu w l."""
     rod = kinked(6, viscosity=0.2, torque_viscosity=3e-4)
     model, bare = build_model([rod]), build_model([kinked(6)])
     changes = []
