@@ -3,7 +3,7 @@ import importlib.util
 import pytest
 from hypothesis import settings
 
-# the same examples in every run, so that a test that fails has been broken; others on demand, with
+# the same examples in every run, so that a new failure is a regression; new examples with
 # --hypothesis-profile=explore
 settings.register_profile("repeat", deadline=None, derandomize=True)
 settings.register_profile("explore", deadline=None, print_blob=True)
@@ -12,8 +12,8 @@ settings.load_profile("repeat")
 
 @pytest.fixture(scope="session")
 def cannot_draw() -> str:
-    """Why MuJoCo cannot draw here, or an empty text."""
-    # without importing it first: how MuJoCo draws is chosen at its import
+    """Reason why MuJoCo cannot render here, or an empty string."""
+    # without importing it first: MuJoCo chooses its renderer at import
     if importlib.util.find_spec("mujoco") is None:
         return "mujoco is not installed"
     from elastica_gym.viz import Stage
@@ -27,6 +27,6 @@ def cannot_draw() -> str:
 
 @pytest.fixture(scope="session")
 def offscreen(cannot_draw):
-    """Skip where MuJoCo cannot draw."""
+    """Skip if MuJoCo cannot render."""
     if cannot_draw:
         pytest.skip(cannot_draw)

@@ -1,4 +1,4 @@
-"""``import elastica_gym`` is light: whoever steps an environment does not wait for what trains or draws."""
+"""``import elastica_gym`` is light: it does not import training or rendering libraries."""
 
 import json
 import subprocess
@@ -7,14 +7,14 @@ import sys
 HEAVY = ("torch", "stable_baselines3", "rerun", "matplotlib", "mujoco", "scipy.interpolate", "scipy.optimize")
 
 
-def test_import_brings_none_of_the_heavy_ones():
+def test_import_does_not_load_heavy_modules():
     code = f"import json, sys, elastica_gym; print(json.dumps([m for m in {HEAVY!r} if m in sys.modules]))"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert json.loads(found) == []
 
 
-def test_import_takes_less_than_half_a_second_beyond_what_it_needs():
-    """In CPU time, and the least of a few, which on a busy machine is near to what it would be on an idle one."""
+def test_import_takes_less_than_half_a_second_beyond_its_dependencies():
+    """In CPU time, minimum of a few runs, which depends little on the machine's load."""
     code = (
         "import time, numpy, numba, gymnasium; t = time.process_time(); import elastica_gym; "
         "print(time.process_time() - t)"

@@ -1,4 +1,4 @@
-"""Progress in logs, which stay short, and on terminals; by a clock that the tests set."""
+"""Progress in logs, which stay short, and on terminals, with a fake clock."""
 
 import io
 
@@ -10,7 +10,7 @@ from elastica_gym.progress import Bar, LogLines, track
 
 @pytest.fixture
 def clock(monkeypatch):
-    """Seconds that pass for the progress, and for nothing else."""
+    """Fake time of the progress display [s]."""
     now = [1000.0]
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
     return now
@@ -32,7 +32,7 @@ def test_a_log_has_a_line_for_every_tenth(clock):
     assert len(lines) == 11 and "\r" not in log.getvalue()
 
 
-def test_what_is_quick_leaves_one_line_in_a_log(clock):
+def test_a_quick_task_leaves_one_line_in_a_log(clock):
     log = io.StringIO()
     with Bar("running", file=log) as bar:
         for step in range(1, 101):
@@ -61,7 +61,7 @@ def test_numbers_are_in_the_line(clock):
 def test_a_terminal_has_a_bar_that_disappears():
     terminal = Terminal()
     with Bar("running", file=terminal) as bar:
-        assert "running:   0%" in terminal.getvalue()  # a sign of life before anything is done
+        assert "running:   0%" in terminal.getvalue()  # shown before the first update
         bar.show(0.5)
         bar.show(1.0)
     assert "\n" not in terminal.getvalue() and terminal.getvalue().endswith("\r")
@@ -72,7 +72,7 @@ def test_track_yields_all(capsys):
     assert capsys.readouterr().err == "counting ...\n"
 
 
-def test_a_line_is_said_above_the_bar():
+def test_a_line_is_printed_above_the_bar():
     terminal = Terminal()
     with Bar("running", file=terminal) as bar:
         bar.show(0.5)

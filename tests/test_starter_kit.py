@@ -1,4 +1,4 @@
-"""The starter kit as a newcomer meets it: the notebook from top to bottom, and the script's policy."""
+"""The starter kit from a newcomer's side: the notebook from top to bottom, and the script's policy."""
 
 import importlib.util
 import json
@@ -18,7 +18,7 @@ SCRIPTS = ROOT / "scripts"
 
 @pytest.fixture
 def small(monkeypatch, tmp_path):
-    """Make the notebook's work small: where it writes, a short video, few targets, a short training."""
+    """Shrink the notebook's work: temporary output, short video, few targets, short training."""
     for name, value in {
         "OUT": tmp_path,
         "SECONDS": 0.5,
@@ -49,7 +49,7 @@ def load(path):
     return module
 
 
-def test_the_notebooks_policy_is_the_scripts():
+def test_notebook_and_script_have_the_same_policy():
     cells = nbformat.read(SCRIPTS / "starter_kit.ipynb", as_version=4).cells
     text = next(cell.source for cell in cells if "POLICY.write_text" in cell.source).split('"""')[1]
     theirs, script = {}, load(SCRIPTS / "starter_kit.py")
@@ -60,7 +60,7 @@ def test_the_notebooks_policy_is_the_scripts():
         np.testing.assert_array_equal(theirs["policy"](observation), script.policy(observation))
 
 
-def test_the_policy_sees_the_object_where_it_says():
+def test_the_policy_reads_the_object_at_the_right_indices():
     script, names = load(SCRIPTS / "starter_kit.py"), TASK.layout(octopus()).names
     assert names.index("goal/forward") == script.SEEN_FORWARD
     assert names.index("goal/right") == script.SEEN_RIGHT

@@ -1,4 +1,4 @@
-"""Ranges of versions: one place says them, and what lies outside is named with the command that mends it."""
+"""Version ranges: defined in one place; versions outside are named with the command that fixes them."""
 
 import subprocess
 import sys
@@ -21,9 +21,9 @@ def test_ranges_are_those_of_the_project():
     given = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
     ranges = versions._ranges(given)
     assert ranges.keys() == set(versions.CHECKED)
-    # what is installed here was tried
+    # the installed versions are within
     versions.require_within(ranges, {**INSTALLED, "numpy": np.__version__, "numba": numba.__version__})
-    # pip turns them around
+    # pip reverses the bounds
     assert versions._ranges(["numba<0.69,>=0.62", "torch>=2.3; extra == 'train'", "numpy>=2.0"]) == {
         "numba": "<0.69,>=0.62",
         "numpy": ">=2.0",
@@ -38,7 +38,7 @@ def test_versions_within_are_silent(numba):
 
 
 @pytest.mark.parametrize(("name", "version"), [("numba", "0.61.2"), ("numpy", "1.26.4"), ("gymnasium", "1.1.1")])
-def test_older_versions_are_refused_with_what_mends_them(name, version):
+def test_older_versions_raise_with_a_fix(name, version):
     command = f"not {version}; fix it with: pip install '{name}{RANGES[name]}'"
     with pytest.raises(ImportError) as raised:
         versions.require_within(RANGES, {**INSTALLED, name: version})
@@ -46,7 +46,7 @@ def test_older_versions_are_refused_with_what_mends_them(name, version):
 
 
 @pytest.mark.parametrize("version", ["0.69", "0.69.0", "0.70.1", "1.0"])
-def test_newer_versions_are_warned_of(version):
+def test_newer_versions_give_a_warning(version):
     with pytest.warns(RuntimeWarning, match=f"not {version}; fix it with: pip install 'numba>=0.62,<0.69'"):
         versions.require_within(RANGES, {**INSTALLED, "numba": version})
 

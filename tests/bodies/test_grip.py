@@ -1,4 +1,4 @@
-"""Wrapping and touch, told from configurations made by hand."""
+"""Wrapping and contact, computed from hand-made configurations."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ PLACE = np.array([0.3, 0.3, -0.2])
 
 @pytest.fixture
 def body():
-    """Return an octopus with radii of its own, which tests may change."""
+    """Return an octopus with its own radii, which tests may change."""
     whole = octopus()
     return replace(whole, model=whole.model._replace(contact_radius=whole.model.contact_radius.copy()))
 
@@ -29,7 +29,7 @@ def first_of(body):
 
 
 def apart(body, n_envs=1):
-    """Animals that lie straight, far from objects that stand upright at PLACE."""
+    """Straight animals far from upright objects at PLACE."""
     state = make_state(body.model, n_envs)
     first, rod = first_of(body), body.rods[0]
     state.x[:, 0, first : first + 121] = 5.0 + np.arange(121) * STEP
@@ -40,13 +40,13 @@ def apart(body, n_envs=1):
 
 
 def lay(body, state, i, elements, gap, *, pitch=0.0, turns_back_at=None):
-    """Lay an arm's elements round the upright object, with equal gaps; return the angle between their centres."""
+    """Lay an arm's elements around the upright object with equal gaps; return the angle between their centres."""
     first, (begin, end) = first_of(body), elements
     radius = body.rods[0].radius[begin]
-    # so thin that their neighbours, which end where they begin, do not touch
+    # so thin that the neighbouring elements do not touch
     body.model.contact_radius[first : first + 120] = 0.001
     body.model.contact_radius[first + begin : first + end] = radius
-    # a chord of a circle is nearer to its centre than the circle
+    # a chord is closer to the centre than its circle
     reach = np.sqrt((RADIUS + radius + gap) ** 2 + (0.5 * STEP) ** 2)
     turn = 2.0 * np.arcsin(0.5 * STEP / reach)
     steps = np.ones(end - begin)
@@ -56,7 +56,7 @@ def lay(body, state, i, elements, gap, *, pitch=0.0, turns_back_at=None):
     height = PLACE[1] + pitch * np.arange(end - begin + 1)
     ring = np.stack([PLACE[0] + reach * np.cos(angle), height, PLACE[2] + reach * np.sin(angle)])
     state.x[i, :, first + begin : first + end + 1] = ring
-    # the rest of the animal leads straight away from the object
+    # the rest of the animal extends straight away from the object
     for node, rest in ((0, begin - 1 - np.arange(begin)), (-1, np.arange(end + 1, 121))):
         tip = ring[:, node]
         outwards = (tip - PLACE) * [1.0, 0.0, 1.0] / reach
@@ -90,11 +90,11 @@ def test_an_arm_on_a_circle(body, arm, count, gap):
 
 
 @pytest.mark.parametrize(("gap", "near"), [(-0.004, 1.0), (0.03, 0.8), (0.12, 0.2), (0.16, 0.0)])
-def test_what_an_arm_on_a_circle_winds(body, gap, near):
+def test_windings_of_an_arm_on_a_circle(body, gap, near):
     state = apart(body)
     turn = lay(body, state, 0, (73, 103), gap)
     windings = grip(body, state).windings[0]
-    # the first and the last of them may also be near with the straight parts that lead there
+    # the straight parts at the first and last element may also be near
     assert near * 29 * turn - 1e-9 <= windings[1] <= near * 31 * turn + 0.2
     assert windings[0] == 0.0
 
@@ -120,7 +120,7 @@ def test_just_out_of_reach(body):
     assert not found.touching.any() and not found.counts.any() and not found.spans.any()
 
 
-def test_what_goes_in_too_deep_does_not_touch(body):
+def test_too_deep_penetration_is_not_contact(body):
     state = apart(body)
     lay(body, state, 0, (5, 45), -0.001)
     assert grip(body, state).counts[0, 0] == 40
@@ -132,8 +132,8 @@ def test_what_goes_in_too_deep_does_not_touch(body):
     assert not found.touching.any() and not found.counts.any() and not found.spans.any()
 
 
-def test_the_span_counts_what_lies_between(body):
-    """Only the ends touch; the way between them leads round the object."""
+def test_the_span_includes_elements_between_contacts(body):
+    """Only the ends touch; the arm between them passes around the object."""
     state = apart(body)
     turn = lay(body, state, 0, (3, 43), -0.001)
     first = first_of(body)
@@ -146,11 +146,11 @@ def test_the_span_counts_what_lies_between(body):
 def test_an_arm_that_turns_back(body):
     state = apart(body)
     turn = lay(body, state, 0, (3, 43), -0.001, turns_back_at=30)
-    # thirty steps of the angle on and ten back: from the first element to the last it is twenty
+    # thirty angle steps forward and ten back: twenty from the first element to the last
     assert grip(body, state).spans[0, 0] == pytest.approx(20 * turn)
 
 
-def test_a_straight_arm_beside_the_object_wraps_little(body):
+def test_a_straight_arm_next_to_the_object_hardly_wraps(body):
     state = apart(body)
     first = first_of(body)
     state.x[0, :, first : first + 51] = [
@@ -164,8 +164,8 @@ def test_a_straight_arm_beside_the_object_wraps_little(body):
     assert np.degrees(found.spans[0, 0]) < 40.0
 
 
-def test_nothing_depends_on_how_the_object_is_turned(body):
-    """A helix round an object that leans, and the same turned upright."""
+def test_grip_does_not_depend_on_the_orientation_of_the_object(body):
+    """A helix around a tilted object, and the same scene turned upright."""
     state = apart(body, 2)
     for i in range(2):
         lay(body, state, i, (72, 112), -0.002, pitch=0.001)
@@ -189,7 +189,7 @@ def test_tilt(body, tilt):
     assert np.degrees(grip(body, state).tilt[0]) == pytest.approx(tilt, abs=1e-6)
 
 
-def test_gaps_are_those_that_the_animal_feels(body):
+def test_gaps_are_those_in_the_observation(body):
     n = 16
     state, _ = at_rest(body.model, body.rods, n, cylinders=body.cylinders)
     for field, resting in zip(state, body.rest, strict=True):
@@ -210,6 +210,6 @@ def test_gaps_are_those_that_the_animal_feels(body):
     np.testing.assert_array_equal(found.spans, np.concatenate([each.spans for each in alone]))
 
 
-def test_a_snake_has_nothing_to_grip():
+def test_a_snake_has_no_object_to_grip():
     with pytest.raises(ValueError, match="body 'snake' has no object to grip"):
         grip(snake(), make_state(snake().model))

@@ -1,4 +1,4 @@
-"""Muscles: order, arms, and couples that never push or spin the animal as a whole."""
+"""Muscles: order, arms, and couples without net force or torque on the animal."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ ROD = snake().rods[0]
 MATRIX = couple_matrix(SNAKE, ROD)
 
 
-def test_order_is_direction_arm_level_place():
+def test_order_is_direction_arm_level_position():
     names = SNAKE.activation_names
     assert len(names) == len(set(names)) == SNAKE.n_activations == 42
     assert names[0] == "normal/front/0.0" and names[7] == "normal/rear/0.0"
@@ -48,7 +48,7 @@ def test_basis_is_gaussian_with_its_peaks_at_the_centres():
     assert not basis(np.array([-0.01, 1.01]), widths).any()
 
 
-def test_activations_for_recover_what_muscles_can_do():
+def test_activations_for_recover_couples_of_muscles():
     wanted = np.random.default_rng(0).uniform(-0.9, 0.9, (3, 42))
     wanted[:, 14:] = 0.0
     couples = np.einsum("ma,ak->mk", wanted, MATRIX[:, 0])
@@ -74,11 +74,11 @@ def test_muscles_neither_push_nor_spin_a_free_snake(seed):
     spin = np.cross(x.T, (m * v).T).sum(axis=0) + np.einsum("jik,jk->i", state.Q[0, :, :, elements], own)
     assert np.abs(m * v).sum() > 1e-4
     assert np.abs((m * v).sum(axis=1)).max() < 1e-12
-    # but for the error of the time step, of second order
+    # up to the second-order error of the time step
     assert np.abs(spin).max() < 1e-6 * np.abs(np.cross(x.T, (m * v).T)).sum()
 
 
-def test_joints_at_the_borders_of_arms_have_muscle():
+def test_joints_at_the_ends_of_arms_have_muscle():
     halves = MATRIX.reshape(3, 2, 7, 3, -1)
     assert (np.abs(halves[..., 24]).max(axis=(2, 3)) > 0.0).all()
     body = octopus()

@@ -1,4 +1,4 @@
-"""The octopus: its shape, how it rests, what its arms can do, and that nothing goes through anything."""
+"""The octopus: its shape, rest position, arm strength, and absence of penetration."""
 
 import numba
 import numpy as np
@@ -35,7 +35,7 @@ def slots(body):
 
 
 def play(body, state, control, activations, seconds, ramp=0.0, parts=1):
-    """Advance with given activations, which rise from nothing over a ramp [s], and yield so often a control step."""
+    """Advance with activations that rise from zero over a ramp [s]; yield ``parts`` times per control step."""
     couples = np.einsum("a,acl->cl", activations, body.couples)
     for step in range(round(seconds / CONTROL_DT)):
         control.couple[0] = couples * min(1.0, (step + 1) * CONTROL_DT / ramp if ramp else 1.0)
@@ -53,7 +53,7 @@ def all_of(direction, arm):
 
 
 def ground_clearance(body, state):
-    """Return the least height of a surface above the ground [m]."""
+    """Return the smallest height of the surface above the ground [m]."""
     nodes, elements = slots(body)
     y = state.x[0, 1, nodes]
     return float((0.5 * (y[1:] + y[:-1]) - state.radius[0, elements]).min())
@@ -65,7 +65,7 @@ def depth(a, e, r1, b, f, r2):
 
 
 def self_overlap(body, state):
-    """Return how deep the surfaces of elements that touch are in each other [m]."""
+    """Return the penetration between elements in self contact [m]."""
     x, radius, slots = state.x[0], body.model.contact_radius, state.x.shape[2]
     deepest = 0.0
     for pair in state.neighbours[0, : state.n_neighbours[0]]:
@@ -119,7 +119,7 @@ def test_full_activation_curls_a_free_arm_by_more_than_a_turn(body, direction):
     assert np.abs(state.v).max() < 1e-3
 
 
-def test_an_arm_holds_the_object_wrapped(body, scene):
+def test_an_arm_keeps_the_object_wrapped(body, scene):
     state, control = scene
     nodes, elements = slots(body)
     x, k = state.x[0, :, nodes], 86
@@ -136,8 +136,8 @@ def test_an_arm_holds_the_object_wrapped(body, scene):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_nothing_goes_through_anything(body, scene, seed):
-    """At full strength, one way and the other, beside the object: arms strike ground, object, head and each other."""
+def test_there_is_no_tunnelling(body, scene, seed):
+    """Arms at full strength in alternating directions strike ground, object, head and each other."""
     state, control = scene
     rng = np.random.default_rng(seed)
     state.body_x[0, 0, [0, 2]] = [[0.02, 0.32], [0.06, -0.36], [-0.2, 0.1], [0.2, -0.2]][seed]
@@ -146,7 +146,7 @@ def test_nothing_goes_through_anything(body, scene, seed):
     pose, readings = make_pose(1, 1), np.zeros((1, low.size), dtype=np.float32)
     rod_touched = body_touched = 0.0
     for _ in range(6):
-        # what strikes at 5 m/s goes 8 mm between two looks
+        # at 5 m/s an arm moves 8 mm between checks
         for _ in play(body, state, control, np.sign(rng.uniform(-1.0, 1.0, 42)), 0.3, parts=31):
             observe(body.model, state, np.zeros((1, 42)), body.sensors, pose, low, high, readings, np.arange(1))
             assert pose.sound[0] == 1
@@ -160,20 +160,20 @@ def test_nothing_goes_through_anything(body, scene, seed):
 
 
 def sides(first, second):
-    """Return activations that bend the arms at their base, (42,)."""
+    """Return activations that bend the arms at their bases, (42,)."""
     activations = np.zeros(42)
     activations[[0, 1, 3, 4]], activations[[7, 8, 10, 11]] = first, second
     return activations
 
 
 def part_of(body, slot):
-    """Return which part of the body an element is of."""
+    """Return the part of the body that an element belongs to."""
     k = slot - int(body.model.first_slot[0])
     return "head" if HEAD[0] <= k < HEAD[1] else "first" if k < HEAD[0] else "second"
 
 
 def overlaps(body, state):
-    """Return how deep parts of the body are in each other, by the names of both [m]."""
+    """Return the penetration between parts of the body, by their names [m]."""
     x, radius, found = state.x[0], body.model.contact_radius, {}
     for pair in state.neighbours[0, : state.n_neighbours[0]]:
         low, high = divmod(int(pair), state.x.shape[2])

@@ -8,7 +8,7 @@ from .tentacle_reach import TENTACLE
 from .toy import TOY, TOY_GOAL
 
 SHORT = 0.5
-"""Episode in most tests [s]: ten control steps"""
+"""Episode duration in most tests [s]: ten control steps"""
 
 
 @pytest.fixture(params=(*IDS, TOY, TENTACLE))
@@ -18,13 +18,13 @@ def env_id(request):
 
 @pytest.fixture(params=(*IDS, TOY, TENTACLE, *GOAL_IDS, TOY_GOAL))
 def any_id(request):
-    """Also those whose observation is a dict: for tests that do not look into it."""
+    """Also ids with dict observations, for tests that do not read them."""
     return request.param
 
 
 @pytest.fixture
 def make_vec():
-    """Make batches, of short episodes unless told otherwise, and close them."""
+    """Make batches, by default with short episodes, and close them."""
     made = []
 
     def make(env_id, num_envs=2, *, duration=SHORT, **kwargs):
@@ -47,7 +47,7 @@ def still(env):
 
 
 def flat(observations):
-    """Observations as one array: those that are a dict side by side."""
+    """Observations as one array; those of a dict are concatenated."""
     if isinstance(observations, dict):
         return np.concatenate(list(observations.values()), axis=-1)
     return observations

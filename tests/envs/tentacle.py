@@ -1,4 +1,4 @@
-"""A body that is described outside the package: a tentacle clamped at its base, in water, with one arm."""
+"""A body defined outside the package: a tentacle clamped at its base, in water, with one arm."""
 
 import functools
 
@@ -19,7 +19,7 @@ MUSCLES = Muscles(
 
 @functools.cache
 def tentacle() -> Body:
-    """Return the tentacle, straight along +x from its base at a height of 0.5 m; water carries it."""
+    """Return the tentacle, straight along +x from its base at a height of 0.5 m, neutrally buoyant in water."""
     rod = Rod.straight(
         N_ELEMENTS,
         start=(0.0, 0.5, 0.0),

@@ -1,6 +1,6 @@
-"""TentacleReach: bring the tip to a target within 3 s; a task for a body that is described outside the package.
+"""TentacleReach: bring the tip to a target within 3 s; a task for a body defined outside the package.
 
-A tentacle in water, clamped at its base, and a target in the water before it.
+A tentacle in water, clamped at its base, and a target in the water in front of it.
 
 Version history
 ---------------
@@ -28,17 +28,17 @@ class Goal(NamedTuple):
     """A target."""
 
     x: np.ndarray
-    """Where it is [m]"""
+    """Position [m]"""
     y: np.ndarray
     """The same [m]"""
     z: np.ndarray
     """The same [m]"""
     way: np.ndarray
-    """Distance of the tip from it at the start [m]"""
+    """Initial distance of the tip [m]"""
 
 
 def drift(rng, body, state, i):
-    """Write the tentacle at rest, drifting a little to a side, all the more the nearer to its tip."""
+    """Write the tentacle at rest with a small sideways velocity that grows towards the tip."""
     for field, resting in zip(state, body.rest, strict=True):
         field[i] = resting[0]
     nodes = body.nodes(0)
@@ -46,7 +46,7 @@ def drift(rng, body, state, i):
 
 
 def sample_goal(rng, situation):
-    """Return where the tip of the tentacle would be on a random arc, bent by 0.5 to 1.5 rad to any side."""
+    """Return the tip of the tentacle on a random arc, bent by 0.5 to 1.5 rad in any direction."""
     angle, side = rng.uniform(0.5, 1.5), rng.uniform(-np.pi, np.pi)
     along, across = np.sin(angle) / angle * LENGTH, (1.0 - np.cos(angle)) / angle * LENGTH
     place = np.array([along, 0.5 + across * np.cos(side), across * np.sin(side)])
@@ -65,12 +65,12 @@ def observe_goal(situation):
 
 
 def approach(situation):
-    """Return how much nearer the tip has come to the target in this step, in body lengths, (B,)."""
+    """Return the decrease of the distance to the target in this step, in body lengths, (B,)."""
     return (gap(situation.goal, situation.before.head) - gap(situation.goal, situation.pose.head)) / LENGTH
 
 
 def distance(situation):
-    """Return how much nearer the tip is to the target than at the start [m], (B,)."""
+    """Return the decrease of the distance to the target since the start [m], (B,)."""
     return situation.goal.way - gap(situation.goal, situation.pose.head)
 
 
@@ -84,7 +84,7 @@ def target(goal):
 
 
 def bend_towards(env):
-    """Return the actions that bend the tentacle more and more to the side where the target is, (B, 21)."""
+    """Return the actions that bend the tentacle increasingly towards the target, (B, 21)."""
     goal, tip, muscles = env.situation().goal, env.pose.head, env.body.muscles
     actions = env.levels.copy()
     for direction, off in (("normal", goal.z - tip[:, 2]), ("binormal", tip[:, 1] - goal.y)):
@@ -93,7 +93,7 @@ def bend_towards(env):
 
 
 GAIN = 0.5
-"""Activation to add to what the muscles have reached, per distance in body lengths"""
+"""Activation added to the reached one, per distance in body lengths"""
 
 REACH = Task(
     name="TentacleReach",

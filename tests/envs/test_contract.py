@@ -1,4 +1,4 @@
-"""What every registered environment keeps: a new one is tested for free."""
+"""Invariants of every registered environment: a new one is tested for free."""
 
 import copy
 import itertools
@@ -80,7 +80,7 @@ def test_integer_seed_counts_up_over_the_batch(any_id, make_vec):
 @pytest.mark.parametrize(
     "seed", [[1, 2], 1.5, "3", "345", [1.7, 2.2, 3.9], np.array([1.0, 2.0, 3.0]), ["1", "2", "3"], np.array(3)], ids=str
 )
-def test_seeds_that_cannot_be_are_refused(env_id, make_vec, seed):
+def test_invalid_seeds_raise(env_id, make_vec, seed):
     with pytest.raises(ValueError, match="seed must be a whole number or 3 of them"):
         make_vec(env_id, 3).reset(seed=seed)
 
@@ -112,11 +112,11 @@ def test_no_observation_is_constant(env_id, make_vec):
     env.reset(seed=1)
     skin = env.body.sensors.skin
     for i, patch in enumerate(itertools.pairwise(skin) if env.body.cylinders else []):
-        # every part of the body meets the object
+        # every part of the body comes close to the object
         k = sum(patch) // 2
         env.state.body_x[i, 0, [0, 2]] = env.state.x[i, [0, 2], k]
         env.state.body_x[i, 0, 0] += env.state.radius[i, k] + env.body.cylinders[0].radius - 0.003
-    # before it is pushed away
+    # before the object is pushed away
     env.n_substeps = 2
     touching = env.step(still(env))[0]
     seen = np.concatenate([seen, touching[None]])
@@ -164,7 +164,7 @@ def test_state_continues_bit_for_bit(any_id, make_vec):
         assert_same(env.step(action)[:4], other.step(action)[:4])
 
 
-def test_state_of_another_batch_is_refused(any_id, make_vec):
+def test_state_of_another_batch_raises(any_id, make_vec):
     env = make_vec(any_id, 3)
     env.reset(seed=0)
     with pytest.raises(ValueError, match="num_envs is 3; here it is 2"):
@@ -172,7 +172,7 @@ def test_state_of_another_batch_is_refused(any_id, make_vec):
 
 
 @pytest.mark.parametrize("changed", [{"control_dt": 0.1}, {"sim_dt": 1e-4}, {"duration": 1.0}])
-def test_state_of_an_environment_made_otherwise_is_refused(any_id, make_vec, changed):
+def test_state_of_an_environment_with_other_arguments_raises(any_id, make_vec, changed):
     env = make_vec(any_id)
     env.reset(seed=0)
     before = env.get_state()
@@ -181,7 +181,7 @@ def test_state_of_an_environment_made_otherwise_is_refused(any_id, make_vec, cha
     assert_same(before["physics"].values(), env.get_state()["physics"].values())
 
 
-def test_pickled_environment_goes_on_alike(any_id, make_vec):
+def test_pickled_environment_continues_identically(any_id, make_vec):
     env = make_vec(any_id)
     roll(env, random_actions(any_id, 9, 3, 2), 0)
     pickled = pickle.loads(pickle.dumps(env))
@@ -190,7 +190,7 @@ def test_pickled_environment_goes_on_alike(any_id, make_vec):
 
 
 def _worker(env_id, queue):
-    import elastica_gym  # noqa: F401  # a spawned process has to register the ids
+    import elastica_gym  # noqa: F401  # a spawned process must register the ids
 
     env = gymnasium.make_vec(env_id, num_envs=3, duration=SHORT, n_threads=2)
     queue.put(roll(env.unwrapped, random_actions(env_id, 11, 3, 3), 2))
@@ -208,13 +208,13 @@ def test_worker_processes_give_the_same(env_id, make_vec, method):
     assert process.exitcode == 0
 
 
-def test_other_libraries_tell_it_by_a_direct_base_of_gymnasiums(any_id, make_vec):
-    """As skrl does, which looks no further."""
+def test_gymnasiums_class_is_a_direct_base(any_id, make_vec):
+    """skrl checks only direct bases."""
     for env in (make_vec(any_id), gymnasium.make(any_id).unwrapped):
         assert any(base.__module__.startswith("gymnasium.") for base in type(env).__bases__)
 
 
-def test_a_deep_copy_goes_on_alike(any_id, make_vec):
+def test_a_deep_copy_continues_identically(any_id, make_vec):
     env = make_vec(any_id)
     roll(env, random_actions(any_id, 9, 3, 2), 0)
     copied = copy.deepcopy(env)
@@ -228,7 +228,7 @@ def test_closing_twice_is_fine(any_id):
         env.close()
 
 
-def test_actions_of_another_shape_are_refused(env_id, make_vec):
+def test_actions_of_another_shape_raise(env_id, make_vec):
     env = make_vec(env_id)
     env.reset(seed=0)
     n = env.body.n_activations
@@ -237,7 +237,7 @@ def test_actions_of_another_shape_are_refused(env_id, make_vec):
             env.step(np.zeros(shape))
 
 
-def test_actions_that_are_not_numbers_are_refused_and_nothing_moves(any_id, make_vec):
+def test_nan_actions_raise_and_nothing_moves(any_id, make_vec):
     env = make_vec(any_id)
     env.reset(seed=0)
     actions = still(env)
@@ -252,7 +252,7 @@ def test_actions_out_of_range_are_clipped(any_id, make_vec):
     assert_same(roll(make_vec(any_id), wild, 0), roll(make_vec(any_id), np.clip(wild, -1.0, 1.0), 0))
 
 
-def test_step_before_reset_says_so(any_id, make_vec):
+def test_step_before_reset_raises(any_id, make_vec):
     with pytest.raises(RuntimeError, match="reset"):
         env = make_vec(any_id)
         env.step(still(env))
@@ -280,7 +280,7 @@ def test_step_before_reset_says_so(any_id, make_vec):
         ({"render_size": 640}, "render_size must be a width and a height from 1 to 2048, .*, not 640"),
     ],
 )
-def test_arguments_that_cannot_be_are_refused_at_construction(env_id, kwargs, message):
+def test_invalid_arguments_raise_at_construction(env_id, kwargs, message):
     with pytest.raises(ValueError, match=message):
         BatchEnv(task_of(env_id), **kwargs)
 
@@ -290,5 +290,5 @@ def test_four_thousand_animals_at_once(env_id, make_vec):
     env.reset(seed=0)
     for _ in range(2):
         _, _, terminated, truncated, _ = env.step(still(env))
-    # a few of so many are at their target from the start
+    # a few of them start at their target
     assert (terminated | truncated).mean() > 0.99

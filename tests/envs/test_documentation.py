@@ -1,4 +1,4 @@
-"""The page of an environment is written from its declaration, and says what is so."""
+"""The page of an environment is generated from its declaration and is correct."""
 
 import re
 from pathlib import Path
@@ -18,8 +18,8 @@ def rows(text, section):
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
 
 
-def test_every_id_has_its_page_as_it_is_declared(monkeypatch):
-    """Which ``python scripts/document_environments.py`` writes."""
+def test_every_id_has_an_up_to_date_page(monkeypatch):
+    """Written by ``python scripts/document_environments.py``."""
     monkeypatch.syspath_prepend(str(ROOT / "scripts"))
     import document_environments
 
@@ -62,7 +62,7 @@ def test_the_page_gives_weight_and_formula_of_every_reward(env_id, make_vec):
     assert all(len(formula) > 10 and "(B" not in formula for _, _, formula in found)
 
 
-def test_the_reasons_to_end_have_the_numbers_that_are_documented(env_id, make_vec):
+def test_termination_reasons_have_the_documented_numbers(env_id, make_vec):
     env = make_vec(env_id)
     text = document(env.task).split("``termination_reason``, a number: ")[1].split(".")[0]
     documented = {name: int(number) for number, name in re.findall(r"(\d+) (\w+)", text)}

@@ -1,4 +1,4 @@
-"""How episodes end and begin, in every mode of autoreset."""
+"""End and start of episodes in every autoreset mode."""
 
 import gymnasium
 import numpy as np
@@ -15,7 +15,7 @@ STEPS = 10
 
 
 def lengths(env, num_envs, total):
-    """Lengths of the episodes that end within ``total`` calls of step, counting steps that move."""
+    """Lengths of the episodes that end within ``total`` calls of step, without reset steps."""
     count, found = np.zeros(num_envs, dtype=int), []
     next_step = env.metadata["autoreset_mode"] == AutoresetMode.NEXT_STEP
     begun = np.zeros(num_envs, dtype=bool)
@@ -41,7 +41,7 @@ def test_episodes_are_equally_long_through_make_and_make_vec(any_id, make_vec, m
     single.close()
 
 
-def test_same_step_returns_the_last_observation_aside(env_id, make_vec):
+def test_same_step_returns_the_final_observation_separately(env_id, make_vec):
     modes = AutoresetMode.SAME_STEP, AutoresetMode.DISABLED
     same, disabled = (make_vec(env_id, 3, autoreset_mode=mode) for mode in modes)
     first, _ = same.reset(seed=0)
@@ -58,9 +58,9 @@ def test_same_step_returns_the_last_observation_aside(env_id, make_vec):
 
 
 @pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
-def test_an_automatic_episode_equals_one_asked_for(any_id, make_vec, mode):
+def test_an_automatic_episode_equals_one_by_reset(any_id, make_vec, mode):
     automatic, asked = (make_vec(any_id, 2, autoreset_mode=m) for m in (mode, AutoresetMode.DISABLED))
-    # an octopus topples if it clenches
+    # an octopus that clenches topples
     gently = still(automatic) + 0.05
     for env in (automatic, asked):
         env.reset(seed=0)
@@ -75,7 +75,7 @@ def test_an_automatic_episode_equals_one_asked_for(any_id, make_vec, mode):
             np.testing.assert_array_equal(flat(a), flat(b))
 
 
-def test_next_step_begins_with_the_step_after_the_end(any_id, make_vec):
+def test_next_step_resets_in_the_step_after_the_end(any_id, make_vec):
     env, asked = (make_vec(any_id, 2, autoreset_mode=m) for m in (AutoresetMode.NEXT_STEP, AutoresetMode.DISABLED))
     env.reset(seed=0)
     asked.reset(seed=0)
@@ -88,7 +88,7 @@ def test_next_step_begins_with_the_step_after_the_end(any_id, make_vec):
     assert (env.elapsed == 0).all() and np.array_equal(env.levels, asked.levels)
 
 
-def test_disabled_resets_only_where_asked(any_id, make_vec):
+def test_disabled_resets_only_selected_environments(any_id, make_vec):
     env = make_vec(any_id, 3, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
     before = flat(env.step(still(env) + 1.0)[0])
@@ -107,13 +107,13 @@ def test_disabled_resets_only_where_asked(any_id, make_vec):
         ({"reset_maks": np.ones(3, bool)}, "options has no 'reset_maks'; there is 'reset_mask'"),
     ],
 )
-def test_options_that_cannot_be_are_refused(env_id, make_vec, options, message):
+def test_invalid_options_raise(env_id, make_vec, options, message):
     with pytest.raises(ValueError, match=message):
         make_vec(env_id, 3, autoreset_mode=AutoresetMode.DISABLED).reset(options=options)
 
 
 def reset_and_steps(env, steps, zeros):
-    """The info of a reset and those of some steps."""
+    """The infos of a reset and of some steps."""
     _, info = env.reset(seed=0)
     return [info, *(env.step(zeros)[4] for _ in range(steps))]
 
@@ -128,7 +128,7 @@ def test_reset_and_every_step_have_an_info_of_the_same_form(any_id, make_vec, mo
         forms = {name: (value.shape, value.dtype) for name, value in info.items() if "final" not in name}
         assert forms == {name: (value.shape, value.dtype) for name, value in together[0].items()}
         assert all(info[f"_{name}"].all() for name in alone[0])
-        # as text they would be of no use to those who make tensors of them
+        # strings could not be converted to tensors
         assert all(
             value.dtype.kind in "bif"
             for value in (*info.values(), *info.get("final_info", info).values())
@@ -140,7 +140,7 @@ def test_reset_and_every_step_have_an_info_of_the_same_form(any_id, make_vec, mo
 
 
 @pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
-def test_an_episode_that_begins_by_itself_has_the_info_of_a_reset(any_id, make_vec, mode):
+def test_an_automatic_reset_has_the_info_of_a_reset(any_id, make_vec, mode):
     env = make_vec(any_id, 2, autoreset_mode=mode)
     first, *_ = infos = reset_and_steps(env, STEPS + (mode == AutoresetMode.NEXT_STEP), still(env))
     assert not first["is_success"].any() and (first["termination_reason"] == TerminationReason.RUNNING).all()
@@ -152,7 +152,7 @@ def test_an_episode_that_begins_by_itself_has_the_info_of_a_reset(any_id, make_v
     assert (ended["termination_reason"] == TerminationReason.TIME_LIMIT).all()
 
 
-def test_a_partial_reset_has_the_info_of_those_that_begin(any_id, make_vec):
+def test_a_partial_reset_has_the_info_of_the_reset_environments(any_id, make_vec):
     env = make_vec(any_id, 3, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
     env.step(still(env) + 1.0)
@@ -162,7 +162,7 @@ def test_a_partial_reset_has_the_info_of_those_that_begin(any_id, make_vec):
 
 
 def truncated_after(env, shape, most=15):
-    """Steps until everything is truncated, and the observations on the way."""
+    """Number of steps until all environments are truncated, and the observations until then."""
     seen = [flat(env.reset(seed=0)[0])]
     for step in range(1, most + 1):
         observations, _, _, truncated, _ = env.step(np.zeros(shape))
@@ -181,7 +181,7 @@ def truncated_after(env, shape, most=15):
         ({"max_episode_steps": None, "duration": 0.25}, 5),
     ],
 )
-def test_max_episode_steps_and_duration_both_limit_episodes_however_they_are_made(any_id, arguments, steps):
+def test_max_episode_steps_and_duration_limit_episodes_of_make_and_make_vec(any_id, arguments, steps):
     batch = gymnasium.make_vec(any_id, num_envs=2, autoreset_mode=AutoresetMode.DISABLED, **arguments)
     single = gymnasium.make(any_id, **arguments)
     many, seen = truncated_after(batch, batch.action_space.shape)
@@ -193,7 +193,7 @@ def test_max_episode_steps_and_duration_both_limit_episodes_however_they_are_mad
 
 
 @pytest.mark.parametrize("steps", [0, -2, 2.5, "10"])
-def test_max_episode_steps_that_cannot_be_are_refused(any_id, make_vec, steps):
+def test_invalid_max_episode_steps_raise(any_id, make_vec, steps):
     with pytest.raises(ValueError, match="max_episode_steps must be a whole number from 1"):
         make_vec(any_id, max_episode_steps=steps)
 
@@ -216,7 +216,7 @@ def test_gymnasiums_statistics_are_those_of_whole_episodes(any_id, make_vec, mod
     assert found == 2
 
 
-def test_gymnasium_turns_all_that_flat_ones_return_into_tensors(env_id, make_vec):
+def test_gymnasium_converts_all_results_of_flat_environments_to_tensors(env_id, make_vec):
     pytest.importorskip("torch")
     pytest.importorskip("array_api_compat")
     from gymnasium.wrappers.vector import NumpyToTorch
@@ -228,7 +228,7 @@ def test_gymnasium_turns_all_that_flat_ones_return_into_tensors(env_id, make_vec
     assert info["final_info"]["termination_reason"].tolist() == [TerminationReason.TIME_LIMIT] * 2
 
 
-def test_scripted_policy_survives_anothers_divergence(any_id, make_vec):
+def test_scripted_policy_survives_divergence_of_another_environment(any_id, make_vec):
     env = make_vec(any_id, 3, autoreset_mode=AutoresetMode.NEXT_STEP)
     env.reset(seed=0)
     env.state.v[1, :, 10] = np.nan
@@ -237,7 +237,7 @@ def test_scripted_policy_survives_anothers_divergence(any_id, make_vec):
     assert np.isfinite(env.pose.head).all()
 
 
-def test_action_of_an_environment_that_begins_is_not_looked_at(any_id, make_vec):
+def test_action_of_an_environment_in_reset_is_ignored(any_id, make_vec):
     env = make_vec(any_id, 2, autoreset_mode=AutoresetMode.NEXT_STEP)
     env.reset(seed=0)
     for _ in range(STEPS):
@@ -266,7 +266,7 @@ def test_divergence_ends_only_its_own_environment(env_id, make_vec, mode):
         np.testing.assert_array_equal(observations[1], last[1])
         running, diverged = TerminationReason.RUNNING, TerminationReason.DIVERGED
         assert info["termination_reason"].tolist() == [running, diverged, running]
-    # and a new episode is sound again
+    # the next episode is valid again
     if mode == AutoresetMode.DISABLED:
         sick.reset(options={"reset_mask": terminated})
     for _ in range(2):

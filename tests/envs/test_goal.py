@@ -1,4 +1,4 @@
-"""Goal-conditioned forms: the reward is a function of achieved and desired goal, and nothing else knows the goal."""
+"""Goal-conditioned environments: the reward is a function of achieved and desired goal; nothing else uses the goal."""
 
 import gymnasium
 import numpy as np
@@ -41,8 +41,8 @@ def test_environment_of_a_batch_equals_the_single_one(goal_id, make_vec):
     single.close()
 
 
-def test_only_the_desired_goal_knows_the_goal(goal_id, make_vec):
-    """Of two batches that differ in their goals alone, only desired goals and rewards differ."""
+def test_only_the_desired_goal_depends_on_the_goal(goal_id, make_vec):
+    """If two batches differ only in their goals, only desired goals and rewards differ."""
     env, moved = make_vec(goal_id, 2), make_vec(goal_id, 2)
     for each in (env, moved):
         each.reset(seed=0)
@@ -52,7 +52,7 @@ def test_only_the_desired_goal_knows_the_goal(goal_id, make_vec):
     np.testing.assert_array_equal(first["observation"], second["observation"])
     np.testing.assert_array_equal(first["achieved_goal"], second["achieved_goal"])
     assert (first["desired_goal"] != second["desired_goal"]).any(axis=1).all()
-    # a head that hardly moves in a step is where it was
+    # the head hardly moves in one step
     assert reward.tolist() == [1.0, 1.0] and terminated.all()
 
 
@@ -67,7 +67,7 @@ def test_rewards_of_many_goals_at_once(goal_id, make_vec):
     assert [float(env.compute_reward(a, d, {})) for a, d in zip(achieved, desired, strict=True)] == rewards.tolist()
 
 
-def test_the_last_observation_of_an_episode_is_aside(goal_id, make_vec):
+def test_the_final_observation_of_an_episode_is_returned_separately(goal_id, make_vec):
     env = make_vec(goal_id, 2, autoreset_mode=AutoresetMode.SAME_STEP)
     env.reset(seed=0)
     for _ in range(10):
@@ -78,8 +78,8 @@ def test_the_last_observation_of_an_episode_is_aside(goal_id, make_vec):
         assert (last["desired_goal"] != now["desired_goal"][i]).any()
 
 
-def test_weights_are_refused(goal_id, make_vec):
-    """Or rewards of `step` would be others than those of `compute_reward`."""
+def test_weights_raise(goal_id, make_vec):
+    """Otherwise rewards of `step` would differ from those of `compute_reward`."""
     for make in (gymnasium.make, make_vec):
         with pytest.raises(ValueError, match=r"weights cannot be given .*, not {.reached.: 2"):
             make(goal_id, weights={"reached": 2.0})

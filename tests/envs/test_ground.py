@@ -1,4 +1,4 @@
-"""The ground holds every animal, under any action: nothing sinks in by more than a part of its radius."""
+"""The ground supports every animal under any action: penetration is at most a fraction of the radius."""
 
 import gymnasium
 import numpy as np
@@ -10,14 +10,14 @@ from elastica_gym.rl.cards import load_pretrained, names, read_card
 from elastica_gym.rl.policies import FullStrengthPolicy, Policy, ZeroPolicy, baseline
 
 RESTING, STRIKING = 0.25, 0.5
-"""Parts of a section's radius by which it may sink in at rest, and at most"""
+"""Allowed penetration at rest and at most, as fractions of the radius"""
 PIECES = 8
-"""Moments of each control step at which it is measured"""
+"""Measurements per control step"""
 SHIPPED = {name: read_card(name)["environment"] for name in names()}
 
 
 class Probe:
-    """An integrator that measures how deep elements are in the ground, over their radii at rest."""
+    """An integrator that measures the penetration of elements into the ground, over their rest radii."""
 
     def __init__(self, batch):
         self.batch, self.team, self.deepest = batch, batch.integrator, 0.0
@@ -37,7 +37,7 @@ class Probe:
 
 
 def probed(env_id: str, policy: Policy, steps: int) -> Probe:
-    """Play a policy in four environments, on after the end of episodes, and return the probe."""
+    """Run a policy in four environments, beyond the end of episodes, and return the probe."""
     env = gymnasium.make_vec(env_id, num_envs=4, autoreset_mode=AutoresetMode.DISABLED, n_threads=1)
     batch = env.unwrapped
     policy.reset(range(4))
@@ -50,16 +50,16 @@ def probed(env_id: str, policy: Policy, steps: int) -> Probe:
 
 
 @pytest.mark.parametrize("env_id", IDS)
-def test_what_rests_does_not_sink_in(env_id):
+def test_penetration_at_rest_is_small(env_id):
     assert probed(env_id, ZeroPolicy(), 30).depth() < RESTING
 
 
 @pytest.mark.parametrize("env_id", IDS)
 @pytest.mark.parametrize("policy", [FullStrengthPolicy(), baseline("random")], ids=["full strength", "random"])
-def test_what_strikes_does_not_sink_in(env_id, policy):
+def test_penetration_at_impact_is_small(env_id, policy):
     assert -0.1 < probed(env_id, policy, 40).deepest < STRIKING
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_shipped_policies_do_not_live_on_soft_ground(name):
+def test_shipped_policies_do_not_exploit_soft_ground(name):
     assert probed(SHIPPED[name], load_pretrained(name)[0], 80).deepest < STRIKING

@@ -1,4 +1,4 @@
-"""What tasks with an object follow, and that what they reward cannot be had by going to and fro."""
+"""Progress of tasks with an object, and that rewards cannot be collected by moving back and forth."""
 
 import numpy as np
 import pytest
@@ -11,8 +11,8 @@ from .conftest import random_actions, still
 RETURN, GRAB, MOVE, FETCH = (f"elastica_gym/Octopus{name}-v1" for name in ("Return", "Grab", "Move", "Fetch"))
 
 
-def test_what_is_held_at_the_start_is_wrapped_and_stays_so(make_vec):
-    """By either arm, in whatever direction it is turned."""
+def test_an_object_held_at_the_start_is_and_stays_wrapped(make_vec):
+    """By either arm, in any orientation."""
     env = make_vec(RETURN, 12, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
     levels = env.levels.copy()
@@ -25,16 +25,16 @@ def test_what_is_held_at_the_start_is_wrapped_and_stays_so(make_vec):
     assert np.degrees(held.tilt).max() < 10.0
 
 
-def test_an_arm_that_lets_go_is_charged_once(make_vec):
+def test_releasing_the_object_costs_once(make_vec):
     env = make_vec(RETURN, 2, duration=2.0, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
     rewards = np.array([env.step(still(env))[1] for _ in range(20)])
     assert ((rewards < -10.0).sum(axis=0) == 1).all()
-    # never at once: it may hold less for 0.2 s
+    # not immediately: a weaker hold is allowed for 0.2 s
     assert (rewards[:4] > -1.0).all()
 
 
-def test_the_object_is_grabbed_when_it_has_been_wrapped_for_half_a_second(make_vec):
+def test_the_object_is_grabbed_after_half_a_second_of_wrapping(make_vec):
     env, held = (make_vec(task, 6, duration=2.0, autoreset_mode=AutoresetMode.DISABLED) for task in (GRAB, RETURN))
     held.reset(seed=0)
     env.reset(seed=0)
@@ -42,19 +42,19 @@ def test_the_object_is_grabbed_when_it_has_been_wrapped_for_half_a_second(make_v
         mine[...] = other
     for step in range(1, 12):
         _, _, terminated, _, info = env.step(held.levels)
-        # wrapped at the ends of steps 1 to 11, which are half a second apart
+        # wrapped at the ends of steps 1 to 11, which span half a second
         assert info["is_success"].tolist() == terminated.tolist() == [step == 11] * 6
     assert (info["reward_success"] == 10.0).all() and (info["reward_early"] > 7.0).all()
 
 
-def test_moving_counts_only_while_touched(make_vec):
-    """Of two octopuses that are carried off by 2 cm, objects and all, one holds its object."""
+def test_moving_counts_only_during_contact(make_vec):
+    """Two octopuses are displaced by 2 cm together with their objects; one holds its object."""
     env = make_vec(RETURN, 2, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
     env.state.body_x[1, 0, 0] += 3.0
     env.state.x[:, 2] += 0.02
     env.state.body_x[:, 0, 2] += 0.02
-    # so short a step moves nothing
+    # a step so short that nothing moves
     env.n_substeps, env.sim_dt = 1, 1e-9
     env.step(env.levels.copy())
     after = env.situation().progress
@@ -63,7 +63,7 @@ def test_moving_counts_only_while_touched(make_vec):
 
 
 @pytest.mark.parametrize("task", [MOVE, GRAB, RETURN, FETCH])
-def test_progress_is_all_numbers_and_goes_with_the_state(make_vec, task):
+def test_progress_is_numeric_and_part_of_the_state(make_vec, task):
     env = make_vec(task, 3)
     env.reset(seed=0)
     for action in random_actions("elastica_gym/OctopusGrab-v1", 0, 5, 3):

@@ -1,4 +1,4 @@
-"""Tasks from elsewhere, and the ids under which they and ours are known. The contract's tests run over one of them."""
+"""External tasks, and the ids of external and own tasks. The contract's tests include an external one."""
 
 from dataclasses import replace
 
@@ -19,20 +19,20 @@ def test_ids_and_tasks_belong_together(any_id):
         env.close()
 
 
-def test_a_task_from_elsewhere_is_the_one_that_was_registered():
+def test_an_external_task_is_the_registered_one():
     assert task_of(TOY) is AWAY
     assert task_of(f"{__package__}.toy:{TOY}") is AWAY
     assert {TOY, TOY_GOAL, *IDS, *GOAL_IDS} <= set(registered_ids())
 
 
-def test_an_id_of_another_packages_is_not_ours():
+def test_ids_of_other_packages_are_not_ours():
     assert "CartPole-v1" not in registered_ids()
     for env_id in ("CartPole-v1", "elastica_gym/SnakeForward-v7"):
         with pytest.raises(ValueError, match=rf"env_id must be one of .*{IDS[0]}.*, not '{env_id}'"):
             task_of(env_id)
 
 
-def test_an_id_may_be_another_with_other_arguments():
+def test_an_id_may_alias_another_with_other_arguments():
     long = "tests/SnakeForwardLong-v0"
     spec = gymnasium.spec(IDS[0])
     gymnasium.register(
@@ -49,13 +49,13 @@ def test_an_id_may_be_another_with_other_arguments():
 
 
 def test_a_saved_spec_makes_the_same_environment(any_id):
-    """As in data sets of Minari, which keep specs as JSON."""
+    """As in Minari data sets, which store specs as JSON."""
     text = gymnasium.make(any_id, duration=0.5).spec.to_json()
     env = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(text))
     assert env.unwrapped.batch.task is task_of(any_id) and env.unwrapped.batch.max_episode_steps == 10
 
 
-def test_a_spec_of_a_task_that_is_not_registered_says_what_is_missing():
+def test_a_spec_of_an_unregistered_task_names_the_missing_import():
     for make in (gymnasium.make, gymnasium.make_vec):
         with pytest.raises(ValueError, match="not 'mine/Lost-v0': import the module that registers it"):
             make(IDS[0], task="mine/Lost-v0")
@@ -69,12 +69,12 @@ def test_a_spec_of_a_task_that_is_not_registered_says_what_is_missing():
         ({"failures": {"success": AWAY.succeeds}}, "failures must have other names than running, .*, not success"),
     ],
 )
-def test_declarations_that_cannot_be_are_refused(changed, message):
+def test_invalid_declarations_raise(changed, message):
     with pytest.raises(ValueError, match=message):
         replace(AWAY, **changed)
 
 
-def test_a_goal_that_is_seen_in_another_width_than_declared_is_refused():
+def test_a_goal_observation_of_another_width_than_declared_raises():
     wrong = replace(AWAY, observe_goal=lambda situation: np.stack(situation.goal, axis=1))
     for env in (BatchEnv(wrong), SingleEnv(wrong)):
         with pytest.raises(ValueError, match=r"observe_goal of SnakeAway must return \(1, 1\), .* not \(1, 3\)"):

@@ -1,4 +1,4 @@
-"""Pictures of environments, as Gymnasium's users ask for them. Whether every id draws, Gymnasium's checker tells."""
+"""Rendering of environments by Gymnasium's interface. Gymnasium's checker covers rendering of every id."""
 
 import os
 import pickle
@@ -22,7 +22,7 @@ DRAWN = {"render_mode": "rgb_array", "render_size": (96, 64)}
 
 @pytest.fixture
 def drawing(offscreen, make_vec):
-    """Make batches that draw small pictures, and close them."""
+    """Make batches that render small pictures, and close them."""
 
     def make(env_id=SNAKE, num_envs=2, **kwargs):
         return make_vec(env_id, num_envs, **DRAWN, **kwargs)
@@ -50,7 +50,7 @@ def test_each_environment_has_its_picture_and_drawing_changes_nothing(drawing, e
 
 
 @pytest.mark.parametrize("env_id", [SNAKE, OCTOPUS])
-def test_the_camera_sees_what_matters_and_does_not_jump(env_id):
+def test_the_camera_covers_animal_and_objects_and_does_not_jump(env_id):
     rng = np.random.default_rng(1)
     rollout = run_rollout(
         env_id, lambda observations, env: rng.uniform(-1.0, 1.0, env.action_space.shape), seed=5, duration=1.5
@@ -68,13 +68,13 @@ def test_the_camera_sees_what_matters_and_does_not_jump(env_id):
         assert (np.abs(from_eye @ right) < 1.5 * high).all()
     middles = rollout.nodes.mean(axis=1)
     moved = np.linalg.norm(np.diff([camera.look_at for camera in cameras], axis=0), axis=1)
-    # no faster than what it follows
+    # no faster than the animal
     assert (moved <= 1.5 * np.linalg.norm(np.diff(middles, axis=0), axis=1) + 0.01 * rollout.body_length).all()
-    # in a twentieth of a second
+    # per twentieth of a second
     assert np.abs(np.diff([camera.distance for camera in cameras])).max() < 0.1 * rollout.body_length
 
 
-def test_what_is_far_away_does_not_draw_the_camera_away(make_vec):
+def test_a_far_target_does_not_move_the_camera_away(make_vec):
     env = make_vec(SNAKE, 1)
     env.reset(seed=0)
     distances = []
@@ -85,14 +85,14 @@ def test_what_is_far_away_does_not_draw_the_camera_away(make_vec):
     assert distances[0] < 12.0 * env.body.sensors.length
 
 
-def test_without_a_render_mode_a_warning_says_how(make_vec):
+def test_without_a_render_mode_a_warning_suggests_one(make_vec):
     env = make_vec(SNAKE)
     env.reset(seed=0)
     with pytest.warns(UserWarning, match="render_mode='rgb_array'"):
         assert env.render() is None
 
 
-def test_before_reset_an_error_says_so():
+def test_render_before_reset_raises():
     for env in (gymnasium.make(SNAKE, **DRAWN), gymnasium.make_vec(SNAKE, num_envs=2, **DRAWN)):
         with pytest.raises(RuntimeError, match="call reset before render"):
             env.unwrapped.render()
@@ -106,7 +106,7 @@ def test_without_mujoco_an_error_says_what_to_install(monkeypatch, make_vec):
         env.render()
 
 
-def test_what_diverged_is_drawn_as_it_was_last(drawing):
+def test_a_diverged_environment_is_drawn_in_its_last_state(drawing):
     env = drawing(num_envs=1)
     env.reset(seed=0)
     env.state.x[0] = np.nan
@@ -117,7 +117,7 @@ def test_what_diverged_is_drawn_as_it_was_last(drawing):
     assert np.abs(env.render()[0].astype(int) - sound).max() <= 2 < np.abs(sound.astype(int) - bare).max()
 
 
-def test_a_pickled_one_draws_the_same(drawing):
+def test_a_pickled_environment_draws_the_same(drawing):
     env = drawing()
     env.reset(seed=0)
     frames = env.render()
@@ -128,7 +128,7 @@ def test_a_pickled_one_draws_the_same(drawing):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="processes do not fork here")
-def test_a_forked_one_goes_on_and_says_that_it_cannot_draw(drawing):
+def test_a_forked_environment_steps_but_raises_in_render(drawing):
     env = drawing(n_threads=1)
     env.reset(seed=0)
     env.render()
@@ -140,7 +140,7 @@ def test_a_forked_one_goes_on_and_says_that_it_cannot_draw(drawing):
             env.render()
         except RuntimeError as error:
             env.close()
-            # 0 only if it says so, and closing does not hang
+            # exit status 0 only if it raises and closing does not hang
             os._exit(0 if "spawn" in str(error) else 1)
         os._exit(2)
     assert os.waitpid(child, 0)[1] == 0
@@ -160,7 +160,7 @@ def test_gymnasium_collects_the_pictures_of_an_episode(offscreen, env_id):
 
 
 @pytest.mark.parametrize("env_id", [SNAKE, GOAL])
-def test_a_window_shows_what_happens(offscreen, env_id, monkeypatch):
+def test_a_window_shows_the_simulation(offscreen, env_id, monkeypatch):
     pygame = pytest.importorskip("pygame")
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     env = gymnasium.make(env_id, duration=0.5, **DRAWN | {"render_mode": "human"})
@@ -172,14 +172,14 @@ def test_a_window_shows_what_happens(offscreen, env_id, monkeypatch):
     env.close()
 
 
-def test_where_no_window_can_be_opened_another_way_is_told(monkeypatch):
+def test_without_pygame_the_error_suggests_another_mode(monkeypatch):
     instead = "render_mode='rgb_array' draws without a window"
     monkeypatch.setitem(sys.modules, "pygame", None)
     with pytest.raises(ImportError, match=rf"'human' needs pygame \(pip install pygame\); {instead}"):
         gymnasium.make(SNAKE, render_mode="human")
 
 
-def test_without_a_display_another_way_is_told(monkeypatch):
+def test_without_a_display_the_error_suggests_another_mode(monkeypatch):
     pytest.importorskip("pygame").display.quit()
     monkeypatch.setenv("SDL_VIDEODRIVER", "none of them")
     with pytest.raises(RuntimeError, match=r"'human' finds no display \(.*\); render_mode='rgb_array' draws"):
@@ -187,7 +187,7 @@ def test_without_a_display_another_way_is_told(monkeypatch):
 
 
 @pytest.mark.parametrize("mode", ["human", "rgb_array_list", "ansi"])
-def test_batches_refuse_other_modes_and_say_who_takes_them(mode):
+def test_batches_reject_other_render_modes_and_name_their_use(mode):
     with pytest.raises(ValueError, match=rf"not '{mode}': gymnasium.make takes 'human' and 'rgb_array_list'"):
         gymnasium.make_vec(SNAKE, num_envs=2, render_mode=mode)
 

@@ -1,4 +1,4 @@
-"""What the snake feels is so."""
+"""Observations are correct."""
 
 import gymnasium
 import numpy as np
@@ -13,7 +13,7 @@ def columns(env, observations, prefix):
     return observations[:, [k for k, name in enumerate(env.observation_names) if name.startswith(prefix)]]
 
 
-def test_first_observation_knows_curvature_and_contact(make_vec):
+def test_first_observation_has_curvature_and_contact(make_vec):
     env = make_vec(FORWARD, 16)
     observations, _ = env.reset(seed=0)
     # in the plane, curvature about the normal is minus the rate at which the heading turns to the right
@@ -27,7 +27,7 @@ def test_first_observation_knows_curvature_and_contact(make_vec):
     np.testing.assert_allclose(columns(env, observations, "contact/").mean(axis=1), 1.0, rtol=1e-6)
 
 
-def test_roll_is_felt(make_vec):
+def test_roll_is_observed(make_vec):
     env = make_vec(FORWARD, 2)
     observations, _ = env.reset(seed=0)
     felt = columns(env, observations, "roll/")
@@ -61,7 +61,7 @@ def test_levels_are_those_of_the_couples(make_vec):
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_bend_to_the_right_turns_to_the_right(make_vec, sign):
-    """Right is what forward x up points to: +z for a snake along +x with y up."""
+    """Right is forward x up: +z for a snake along +x with y up."""
     from elastica_gym.scripted.gaits import snake_crawl
 
     env = make_vec(FORWARD, 4, duration=5.0)
@@ -77,7 +77,7 @@ def test_a_bend_to_the_right_turns_to_the_right(make_vec, sign):
     assert (sign * turned > 1.0).all()
 
 
-def test_too_few_elements_are_refused():
+def test_too_few_elements_raise():
     with pytest.raises(ValueError, match="n_elements must be at least 16, not 3"):
         gymnasium.make_vec(FORWARD, num_envs=1, body_kwargs={"n_elements": 3})
 
@@ -91,14 +91,14 @@ def in_the_heads_frame(env, i, vector):
     return [vector[0] * x + vector[2] * z, vector[1], vector[2] * x - vector[0] * z]
 
 
-def test_the_object_is_felt(make_vec):
+def test_the_object_is_observed(make_vec):
     env = make_vec(REACH, 3)
     env.reset(seed=0)
     for i, (x, z) in enumerate(env.pose.heading):
-        # half a metre to the right of the head, which is where forward x up points
+        # half a metre to the right of the head, along forward x up
         env.state.body_x[i, 0, [0, 2]] = env.pose.head[i, [0, 2]] + 0.5 * np.array([-z, x])
     env.state.body_v[:, 0], env.state.body_w[:, 0] = [0.3, 0.1, -0.2], [0.5, -1.0, 2.0]
-    # so short a step moves nothing
+    # a step so short that nothing moves
     env.sim_dt = 1e-9
     observations = env.step(still(env))[0]
     np.testing.assert_allclose(columns(env, observations, "object/0/position/")[:, [0, 2]], [[0.0, 0.5]] * 3, atol=1e-4)
@@ -107,12 +107,12 @@ def test_the_object_is_felt(make_vec):
         for name, vector in (("axis", env.state.body_Q[i, 0, 2]), ("velocity", env.state.body_v[i, 0]), ("spin", spin)):
             felt = columns(env, observations, f"object/0/{name}/")[i]
             np.testing.assert_allclose(felt, in_the_heads_frame(env, i, vector), atol=1e-5)
-    # a column of radius 0.05 m, half a metre from a head of 0.125 m
+    # a column of radius 0.05 m, half a metre from a head of radius 0.125 m
     np.testing.assert_allclose(columns(env, observations, "object/0/gap"), 0.325, atol=0.01)
     np.testing.assert_allclose(columns(env, observations, "goal/"), [[0.0, 1.0]] * 3, atol=1e-4)
 
 
-def test_home_is_felt(make_vec):
+def test_home_is_observed(make_vec):
     env = make_vec(REACH, 2)
     observations, _ = env.reset(seed=0)
     np.testing.assert_allclose(columns(env, observations, "home/"), 0.0, atol=1e-7)
@@ -128,7 +128,7 @@ def test_home_is_felt(make_vec):
     ("spread", "nearest", "furthest", "low", "high"),
     [("arc", 0.4, 0.4, 0.0, 90.0), ("anywhere", 0.4, 0.8, -180.0, 180.0), ("default", 0.4, 0.4, 90.0, 90.0)],
 )
-def test_where_the_object_stands(make_vec, spread, nearest, furthest, low, high):
+def test_position_of_the_object(make_vec, spread, nearest, furthest, low, high):
     env = make_vec(REACH, 400, spread=spread)
     observations, _ = env.reset(seed=0)
     way = columns(env, observations, "object/0/position/")[:, [0, 2]]

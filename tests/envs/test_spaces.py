@@ -1,4 +1,4 @@
-"""The spaces of flat environments say what their numbers are, and are Gymnasium's in all else."""
+"""Spaces of flat environments name their entries, and otherwise equal Gymnasium's."""
 
 import copy
 import pickle
@@ -25,7 +25,7 @@ def test_it_equals_a_plain_box_of_the_same_bounds(space):
 
 
 @pytest.mark.parametrize("way", [copy.deepcopy, lambda space: pickle.loads(pickle.dumps(space))])
-def test_copies_keep_what_the_numbers_are(space, way):
+def test_copies_keep_the_names_of_entries(space, way):
     other = way(space)
     assert type(other) is NamedBox and other == space
     assert (other.names, other.mirror, other.duration) == (space.names, space.mirror, space.duration)
@@ -36,11 +36,11 @@ def test_batches_of_it_are_gymnasiums(space):
     assert type(batch) is Box and batch.shape == (3, *space.shape)
 
 
-def test_it_is_what_the_environment_says(env_id, make_vec):
+def test_it_agrees_with_the_environment(env_id, make_vec):
     env = make_vec(env_id, duration=0.5)
     space = env.single_observation_space
     assert space.names == env.observation_names and len(env.single_action_space.names) == env.body.n_activations
     assert space.mirror is env.body.mirror is env.single_action_space.mirror
     assert space.duration == pytest.approx(0.5) == env.duration
-    # however soon an episode is cut short, its clock goes on alike
+    # the clock does not depend on when an episode is truncated
     assert make_vec(env_id, duration=0.5, max_episode_steps=3).single_observation_space.duration == space.duration

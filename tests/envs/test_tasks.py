@@ -1,4 +1,4 @@
-"""Rewards point the right way."""
+"""Rewards favour the right behaviour."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ SEEDS = 20
 
 
 def returns(env, act):
-    """Return of the first episode of each environment."""
+    """Returns of the first episode of each environment."""
     env.reset(seed=1)
     total, running = np.zeros(env.num_envs), np.ones(env.num_envs, dtype=bool)
     for _ in range(env.max_episode_steps):
@@ -24,7 +24,7 @@ def returns(env, act):
 
 
 def beats(good, bad):
-    """Whether the mean of ``good`` is above that of ``bad`` by three standard errors."""
+    """Whether the mean of ``good`` exceeds that of ``bad`` by three standard errors."""
     error = np.sqrt(good.var(ddof=1) / good.size + bad.var(ddof=1) / bad.size)
     return good.mean() - bad.mean() > 3.0 * error
 
@@ -38,13 +38,13 @@ def test_scripted_policy_beats_zero_and_random(env_id, make_vec):
 
 
 def place(env, heads):
-    """Put the target of each environment at given distances from the head [m]."""
+    """Place the target of each environment at given distances from the head [m]."""
     env.goal[:, 0] = env.pose.head[:, 0] + heads
     env.goal[:, 1] = env.pose.head[:, 2]
 
 
 def test_reaching_early_beats_reaching_late_and_hovering(make_vec):
-    """Three snakes come equally near: one at once, one late, one only almost and stays there."""
+    """Three snakes approach their targets: one reaches it early, one late, and one hovers just outside."""
     env = make_vec("elastica_gym/SnakeReach-v1", 3, duration=5.0, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=[0, 0, 0])
     place(env, 0.5)
@@ -68,13 +68,13 @@ def test_targets_fill_the_ring_uniformly(make_vec):
     away = (env.goal[:, :2] - env.pose.centre[:, [0, 2]]) / env.body.sensors.length
     radius, bearing = np.hypot(*away.T), np.arctan2(*away.T)
     assert radius.min() >= 0.5 and radius.max() <= 1.5
-    # uniform over area and bearing: quartiles of each
+    # quartiles of area and bearing, both uniform
     np.testing.assert_allclose(np.quantile((radius**2 - 0.25) / 2.0, [0.25, 0.5, 0.75]), [0.25, 0.5, 0.75], atol=0.04)
     np.testing.assert_allclose(np.quantile(bearing / np.pi, [0.25, 0.5, 0.75]), [-0.5, 0.0, 0.5], atol=0.08)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_forward_pays_for_the_way_along_the_initial_heading(make_vec, sign):
+def test_forward_rewards_distance_along_the_initial_heading(make_vec, sign):
     env = make_vec("elastica_gym/SnakeForward-v1", 2)
     env.reset(seed=3)
     heading = env.goal[:, :2]
@@ -87,7 +87,7 @@ def test_forward_pays_for_the_way_along_the_initial_heading(make_vec, sign):
     np.testing.assert_allclose(info["reward_forward"], 10.0 * info["distance"] / 0.35, rtol=1e-9)
 
 
-def test_heading_pays_for_turning_back_and_costs_as_much_for_turning_away(make_vec):
+def test_heading_rewards_turning_back_as_much_as_turning_away_costs(make_vec):
     env = make_vec("elastica_gym/SnakeForward-v1", 2, duration=2.0)
     env.reset(seed=3)
     total, off_course = np.zeros(2), np.zeros(2)
@@ -102,7 +102,7 @@ def test_heading_pays_for_turning_back_and_costs_as_much_for_turning_away(make_v
 
 
 @pytest.mark.slow
-def test_the_scripted_crawl_of_the_octopus_goes_half_a_metre(make_vec):
+def test_the_scripted_octopus_crawls_half_a_metre(make_vec):
     env = make_vec("elastica_gym/OctopusCrawl-v1", 64, duration=None, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
     made, running = np.zeros(64), np.ones(64, dtype=bool)
@@ -116,7 +116,7 @@ def test_the_scripted_crawl_of_the_octopus_goes_half_a_metre(make_vec):
 def test_toppling_ends_an_octopus_and_costs(make_vec):
     env = make_vec("elastica_gym/OctopusCrawl-v1", 2, duration=2.0, autoreset_mode=AutoresetMode.DISABLED)
     env.reset(seed=0)
-    # both arms lift as far as they can
+    # both arms lift fully
     lift = np.zeros((2, 42))
     lift[0, 14:28] = 1.0
     for _ in range(40):

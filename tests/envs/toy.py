@@ -1,4 +1,4 @@
-"""A task that is declared and registered outside the package, as a user would."""
+"""A task declared and registered outside the package, as by a user."""
 
 from typing import NamedTuple
 
@@ -39,7 +39,7 @@ def distance(situation):
 
 
 def away(situation):
-    """Return the way made from the start in this step, in body lengths, (B,)."""
+    """Return the distance gained from the start in this step, in body lengths, (B,)."""
     return (distance(situation) - from_start(situation.before.centre, situation.goal)) / situation.body.sensors.length
 
 

@@ -10,7 +10,7 @@ def scripted(observations, env):
 
 
 def pushing(observations, env):
-    """Bend the second arm to the right, where the object stands on the arc."""
+    """Bend the second arm to the right, towards the object on the arc."""
     actions = np.zeros((env.num_envs, 42))
     actions[:, 7] = 0.7
     return actions

@@ -51,7 +51,7 @@ def test_objects_and_a_head_in_the_middle(drawn, octopus):
     camera = framing(outline(octopus, [0]), 1.6)
     with Stage(**SIZE, unit=octopus.body_length) as stage:
         alone, both = stage.draw([head], camera), stage.draw(figures(octopus, 0), camera)
-    # the object is taller on the picture than thick
+    # the object is taller than thick in the picture
     seen = np.abs(both.astype(int) - alone).max(axis=-1) > 40
     assert seen.any(axis=1).sum() > seen.any(axis=0).sum() > 4
 
@@ -70,7 +70,7 @@ def test_home_is_a_disc_on_the_ground(drawn, octopus):
     assert everything.shape == (SIZE["height"], SIZE["width"], 3)
 
 
-def test_a_home_that_was_left_is_in_the_picture(octopus, forward):
+def test_a_home_left_behind_is_in_the_picture(octopus, forward):
     far = replace(octopus, home=octopus.home + np.array([3.0, 0.0, 0.0]))
     assert outline(far, [0])[:, 0].max() == pytest.approx(far.home[0, 0])
     assert home(forward, 0) == []
@@ -92,7 +92,7 @@ def test_cylinders_end_flat(drawn):
 
 @pytest.mark.parametrize("azimuth", [0.0, 30.0, 200.0])
 @pytest.mark.parametrize("elevation", [-20.0, -60.0])
-def test_framing_sees_everything(azimuth, elevation):
+def test_framing_includes_everything(azimuth, elevation):
     points = np.random.default_rng(0).normal(size=(50, 3)) * [1.0, 0.1, 0.5]
     camera = framing(points, 1.6, azimuth=azimuth, elevation=elevation)
     az, el = np.deg2rad((azimuth, elevation))
@@ -122,7 +122,7 @@ def test_bad_arguments(forward):
         animal(np.zeros((4, 3)), np.ones(2))
 
 
-def test_where_nothing_can_draw_the_error_says_what_to_install():
+def test_without_a_renderer_the_error_says_what_to_install():
     if importlib.util.find_spec("mujoco") is None:
         pytest.skip("mujoco is not installed")
     code = (

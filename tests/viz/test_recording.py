@@ -26,7 +26,7 @@ def octopus_recording(octopus, tmp_path_factory):
 
 def written(rollout, tmp_path_factory):
     with warnings.catch_warnings():
-        # rerun only warns of what it cannot use
+        # rerun only warns of invalid data
         warnings.simplefilter("error")
         return write_recording(rollout, tmp_path_factory.mktemp("viz") / "new" / "rollout.rrd")
 
@@ -42,7 +42,7 @@ def axes(quaternions):
 
 def column(path, entity, component):
     chunks = rr.chunk.RrdReader(path).stream().filter(content=entity, components=component, is_static=False).to_chunks()
-    assert len(chunks) == 1, "written a column at a time, an entity is one chunk"
+    assert len(chunks) == 1, "entities are written by columns, as one chunk"
     batch = chunks[0].to_record_batch()
     return batch, batch.column(component)
 
@@ -73,7 +73,7 @@ def test_capsules_have_the_true_shape(recording, forward):
     assert begin + axis * read("lengths").reshape(begin.shape[:2])[..., None] == pytest.approx(end, abs=1e-7)
 
 
-def test_objects_have_the_true_shape_place_and_axis(octopus_recording, octopus):
+def test_objects_have_the_true_shape_position_and_axis(octopus_recording, octopus):
     def read(component):
         batch, values = column(octopus_recording, "/objects", f"Cylinders3D:{component}")
         assert np.array_equal(batch.column("step").to_numpy(), octopus.step)
@@ -88,21 +88,21 @@ def test_objects_have_the_true_shape_place_and_axis(octopus_recording, octopus):
         assert read_back == pytest.approx(values)
 
 
-def test_touch_is_recorded(octopus_recording, octopus):
+def test_contact_is_recorded(octopus_recording, octopus):
     forces = column(octopus_recording, "/animal/object_force", "Scalars:scalars")[1].flatten().to_numpy()
     assert np.array_equal(forces.reshape(octopus.object_force.shape), octopus.object_force)
     assert forces.any()
 
 
-def test_what_there_is_none_of_is_not_logged(recording, octopus_recording):
+def test_absent_entities_are_not_logged(recording, octopus_recording):
     assert {"/animal/head", "/animal/trail", "/animal/direction"} <= entities(recording)
     assert not {"/objects", "/animal/object_force", "/target", "/home"} & entities(recording)
-    # the octopus's head is its thickest part: no ball is to be drawn over it
+    # the octopus's head is its thickest part: no ball must cover it
     assert {"/objects", "/animal/object_force", "/animal/trail", "/animal/direction"} <= entities(octopus_recording)
     assert "/animal/head" not in entities(octopus_recording)
 
 
-def test_series_are_all_there(recording, forward):
+def test_all_series_are_recorded(recording, forward):
     _, returns = column(recording, "/return", "Scalars:scalars")
     assert returns.flatten().to_numpy() == pytest.approx(forward.episode_return)
     for term, values in forward.rewards.items():
@@ -186,7 +186,7 @@ def test_full_disk_leaves_the_old_recording(forward, tmp_path, monkeypatch):
     assert [p.name for p in tmp_path.iterdir()] == ["a.rrd"]
 
 
-def test_reading_what_is_no_recording(recording, tmp_path):
+def test_reading_an_invalid_recording(recording, tmp_path):
     with pytest.raises(FileNotFoundError, match="no recording at"):
         read_positions(tmp_path / "none.rrd")
     cut = tmp_path / "cut.rrd"
@@ -201,7 +201,7 @@ def test_reading_what_is_no_recording(recording, tmp_path):
         read_positions(other)
 
 
-def test_nothing_heavy_is_imported_before_it_is_needed():
+def test_heavy_imports_are_lazy():
     heavy = ("rerun", "mujoco", "matplotlib", "torch", "PIL")
     code = f"import sys, elastica_gym, elastica_gym.viz; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

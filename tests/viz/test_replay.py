@@ -43,7 +43,7 @@ def answers(host, port):
 
 
 def other_address():
-    """This machine's address towards others; asking for the route sends nothing."""
+    """This machine's address in the network; the route lookup sends nothing."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.connect(("203.0.113.1", 9))
@@ -53,7 +53,7 @@ def other_address():
     return None if address.startswith("127.") else address
 
 
-def test_web_serves_this_machine_only_until_interrupted(recording):
+def test_web_serves_only_this_machine_until_interrupted(recording):
     page, data = free_port(), free_port()
     command = [sys.executable, SCRIPT, recording, "--web", "--port", str(page), "--data-port", str(data)]
     script = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -96,7 +96,7 @@ replay.main()
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 def test_an_interrupt_while_the_viewer_starts_leaves_no_process_behind(recording):
-    """At the worst moment: when it runs, but the script does not know of it yet."""
+    """At the worst time: the viewer runs, but the script does not know it yet."""
     code = STARTING.format(recording=str(recording), page=free_port(), data=free_port())
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
@@ -134,7 +134,7 @@ def test_a_port_in_use(recording):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems have a display")
-def test_without_a_display_it_points_to_the_browser(recording):
+def test_without_a_display_the_error_suggests_the_browser(recording):
     done = replay(recording)
     assert done.returncode == 2
     assert "--web" in done.stderr

@@ -42,7 +42,7 @@ def test_the_octopus_has_its_head_in_the_middle(octopus):
     assert octopus.head_radius == pytest.approx(0.125, rel=0.05)
 
 
-def test_the_head_of_two_rods_may_end_either(octopus):
+def test_the_head_may_be_at_the_end_of_either_rod(octopus):
     for node, is_end in ((0, True), (20, True), (21, True), (120, True), (19, False), (22, False)):
         two = replace(octopus, elements_per_rod=(20, 99), radii=octopus.radii[:, :119], head_node=node)
         assert two.head_is_an_end == is_end
@@ -61,8 +61,8 @@ def test_objects_are_those_of_the_environment(octopus, forward):
     assert np.linalg.norm(octopus.object_axis, axis=-1) == pytest.approx(1.0)
 
 
-def test_touch_is_felt_where_the_object_is(octopus):
-    # the episode ends when they touch
+def test_contact_is_recorded_at_the_object(octopus):
+    # the episode ends at contact
     assert octopus.sim_time[-1] < 1.0
     touched = np.flatnonzero(octopus.object_force[-1])
     assert touched.size
@@ -71,7 +71,7 @@ def test_touch_is_felt_where_the_object_is(octopus):
     assert (away < octopus.object_radius[0] + octopus.radii[-1, touched] + 0.01).all()
 
 
-def test_a_recorded_moment_stays_as_it_was():
+def test_recorded_states_do_not_change():
     env = gymnasium.make_vec("elastica_gym/OctopusReach-v1", num_envs=2, vectorization_mode="vector_entry_point")
     env.reset(seed=0)
     recorder = Recorder(env, 1).capture()
@@ -83,12 +83,12 @@ def test_a_recorded_moment_stays_as_it_was():
     assert not any((getattr(rollout, name) == 7.0).any() for name in ("nodes", "object_axis", "object_force"))
 
 
-def test_direction_is_the_one_that_the_task_commands(forward):
+def test_direction_is_that_of_the_task(forward):
     env = gymnasium.make_vec("elastica_gym/OctopusCrawl-v1", num_envs=1, vectorization_mode="vector_entry_point")
     env.reset(seed=0)
     goal = env.unwrapped.goal[0]
     assert Recorder(env).capture().rollout().direction == pytest.approx(np.array([[goal[2], 0.0, goal[3]]]))
-    # the snake is to keep its first heading, whatever its heading is now
+    # the snake must keep its initial heading, independent of its current one
     assert forward.direction == pytest.approx(np.broadcast_to(forward.direction[0], (41, 3)))
 
 
@@ -120,18 +120,18 @@ def test_one_environment_of_a_batch():
     assert np.array_equal(followed.nodes, alone.nodes)
 
 
-def test_single_view_is_recorded_too():
+def test_single_environment_is_recorded_too():
     env = gymnasium.make(ID)
     env.reset(seed=0)
     assert Recorder(env).capture().rollout().nodes.shape == (1, 51, 3)
 
 
-def test_reach_has_a_target_and_ends_when_it_is_reached(reach):
+def test_reach_has_a_target_and_ends_at_it(reach):
     gap = np.linalg.norm((reach.head - reach.target)[:, [0, 2]], axis=1)
     assert gap[-1] <= reach.target_radius < gap[-2]
 
 
-def test_what_is_not_finite_repeats_the_last_moment():
+def test_non_finite_states_repeat_the_last_one():
     env = make(1)
     env.reset(seed=0)
     recorder = Recorder(env).capture()
@@ -150,7 +150,7 @@ def test_bad_arguments():
 
 
 @pytest.mark.parametrize("env_id", IDS)
-def test_home_is_where_the_task_has_it(env_id):
+def test_home_is_at_the_position_of_the_task(env_id):
     env = gymnasium.make_vec(env_id, num_envs=2, vectorization_mode="vector_entry_point")
     observations, _ = env.reset(seed=3)
     batch = env.unwrapped
@@ -159,7 +159,7 @@ def test_home_is_where_the_task_has_it(env_id):
     assert (rollout.home is not None) == ("home/forward" in names)
     if rollout.home is None:
         return
-    # as the animal sees it: forward and right of its head
+    # relative to the animal: forward and right of its head
     hx, hz = batch.pose.heading[1]
     x, _, z = rollout.home[0] - batch.pose.head[1]
     seen = [observations[1, names.index(f"home/{which}")] for which in ("forward", "right")]
@@ -167,5 +167,5 @@ def test_home_is_where_the_task_has_it(env_id):
     assert rollout.home[0, 1] == 0.0
 
 
-def test_the_disc_of_home_is_as_wide_as_being_at_home():
+def test_the_disc_of_home_has_the_radius_of_success():
     assert HOME_RADIUS == handling.AT_HOME
