@@ -26,9 +26,9 @@ class ReplayArguments:
     """Open a recording of an episode in the rerun viewer: in a window, or with --web in a browser on this machine."""
 
     file: tyro.conf.Positional[Path]
-    """A recording that ends in .rrd."""
+    """A recording, *.rrd."""
     web: bool = False
-    """Serve it to browsers on this machine, and to no other: both ports are bound to 127.0.0.1."""
+    """Serve it to browsers on this machine only: both ports are bound to 127.0.0.1."""
     port: int = 9090
     """Port of the web page."""
     data_port: int = 9876
@@ -47,11 +47,11 @@ def main() -> None:
 
 
 def check_recording(path: Path) -> None:
-    """Raise a BadInputError unless there is a whole recording at the path and rerun to open it with."""
+    """Raise a BadInputError unless the path holds a complete recording and rerun is installed."""
     if not path.exists():
         raise BadInputError(f"there is no file {path}")
     if not path.is_file():
-        raise BadInputError(f"{path} is not a file; give a recording in it, which ends in .rrd")
+        raise BadInputError(f"{path} is not a file; give the path of a recording, *.rrd")
     try:
         with path.open("rb") as file:
             begin = file.read(len(MAGIC))
@@ -68,10 +68,10 @@ def check_recording(path: Path) -> None:
 
 
 def open_window(path: Path, port: int) -> int:
-    """Open the recording in a window, or in a viewer that is already open; return when it is closed."""
+    """Open the recording in a window or in an open viewer; return when it is closed."""
     if not has_display():
         raise BadInputError(f"there is no display to open a window on; try: {invocation('replay')} {path} --web")
-    print(f"opening {path} in a window; the command ends when that is closed", flush=True)
+    print(f"opening {path} in a window; the command exits when it is closed", flush=True)
     return run_viewer([str(path), "--bind", LOOPBACK, "--port", str(port)])
 
 
