@@ -12,7 +12,10 @@ from elastica_gym.envs import GOAL_IDS, IDS, document, task_of
 from elastica_gym.rl import cards
 
 DOCS = Path(__file__).parents[1] / "docs"
+README = DOCS.parent / "README.md"
 INDEX = "index"
+BEGIN, END = "<!-- written by scripts/document_environments.py -->\n", "<!-- end -->"
+"""What surrounds the table in the README"""
 HINDSIGHT = "hindsight experience replay, see `elastica_gym.envs.goal`"
 
 
@@ -23,7 +26,8 @@ def main() -> None:
     folder = make_folder(parser.parse_args().out)
     for name, text in pages().items():
         (folder / f"{name}.md").write_text(text)
-    print(f"wrote {len(pages())} pages into {folder}")
+    README.write_text(with_table(README.read_text()))
+    print(f"wrote {len(pages())} pages into {folder}, and the table of {README}")
 
 
 def pages() -> dict[str, str]:
@@ -45,19 +49,39 @@ def index(ids: tuple[str, ...]) -> str:
     for env_id in ids:
         task = task_of(env_id)
         body = task.make_body()
-        summary = document(task).split("\n\n")[1].removesuffix(".")
-        found = _cards(env_id)
-        card = found[0] if found else None
+        card = next(iter(_cards(env_id)), None)
         name = f"[{task.name}]({task.name}.md)"
         sizes = f"{len(task.layout(body).names)} | {body.n_activations}"
         score = f"`{card['name']}` | {best_score(card)} | {card['wall_time_minutes']:.0f}" if card else " | | "
-        rows.append(f"| {name} | {summary[:1].lower()}{summary[1:]} | {sizes} | {score} |")
+        rows.append(f"| {name} | {_summary(task)} | {sizes} | {score} |")
     tree = ["```{toctree}", ":hidden:", "", *(task_of(env_id).name for env_id in ids), "```"]
     text = (
         "Scores are means over 100 unseen episodes; minutes are those that the shipped policy was trained for, on the "
         "machine that its card names, without those of a policy that it started from."
     )
     return "\n\n".join(["# Environments", text, "\n".join(rows), "\n".join(tree)]) + "\n"
+
+
+def with_table(readme: str) -> str:
+    """Return the README with its table of environments as it is now."""
+    before, _, rest = readme.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    rows = ["| | environment | task | observation, action | best score | minutes |", "|" + "---|" * 6]
+    for env_id in (*IDS, *GOAL_IDS):
+        task = task_of(env_id)
+        body = task.make_body()
+        card = next(iter(_cards(env_id)), None)
+        score = f"{best_score(card)} | {card['wall_time_minutes']:.0f}" if card else " | "
+        picture = f'<img src="docs/images/{task.name}.gif" width="150" alt="{task.name}">'
+        link = f"[`{env_id}`](docs/environments/{task.name}.md)"
+        sizes = f"{len(task.layout(body).names)}, {body.n_activations}"
+        rows.append(f"| {picture} | {link} | {_summary(task)} | {sizes} | {score} |")
+    return before + BEGIN + "\n" + "\n".join(rows) + "\n\n" + end + after
+
+
+def _summary(task: Any) -> str:
+    summary = document(task).split("\n\n")[1].removesuffix(".")
+    return summary[:1].lower() + summary[1:]
 
 
 def best_score(card: dict[str, Any]) -> str:

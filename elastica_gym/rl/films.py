@@ -15,6 +15,8 @@ COLORS = 64
 """Colours of a GIF: more increase its size and hardly improve it"""
 SIZE = (640, 360)
 """Default width and height of a film [pixels]"""
+FAR = 3.0
+"""Extent of the head's path beyond which the camera moves with the animal [body lengths]"""
 LARGEST_SIDE = 2048
 """Maximum width or height [pixels]"""
 
@@ -77,7 +79,8 @@ def film(
     rollout = run_shown(policy, env_id, seed=seed, env_kwargs=env_kwargs or {})
     moments = range(0, len(rollout.step), every)
     with Bar(f"drawing {len(moments)} frames") as bar:
-        frames = render_frames(rollout, moments, width=size[0], height=size[1], show=bar.show)
+        follows = np.ptp(rollout.head, axis=0).max() > FAR * rollout.body_length
+        frames = render_frames(rollout, moments, follows=follows, width=size[0], height=size[1], show=bar.show)
     seconds = every * float(np.diff(rollout.sim_time).mean())
     if path.suffix == ".gif":
         _write_gif(frames, path, seconds)

@@ -317,6 +317,7 @@ def render_frames(
     *,
     has_trail: bool = True,
     camera: Camera | None = None,
+    follows: bool = False,
     width: int = 960,
     height: int = 540,
     show: Callable[[float], object] | None = None,
@@ -332,6 +333,8 @@ def render_frames(
         Whether to draw the head's path.
     camera : Camera, optional
         By default one that shows everything from the first to the last frame.
+    follows : bool
+        Whether the camera moves with the animal instead.
     width, height : int
         Size of the frames [pixels].
     show : callable, optional
@@ -345,12 +348,14 @@ def render_frames(
     picked = list(range(len(rollout.step)) if moments is None else moments)
     if not picked or not set(picked) <= set(range(len(rollout.step))):
         raise ValueError(f"moments must be indices from 0 to {len(rollout.step) - 1}, not {picked}")
-    camera = camera or framing(outline(rollout, picked), width / height)
+    if camera is None and not follows:
+        camera = framing(outline(rollout, picked), width / height)
     frames = np.empty((len(picked), height, width, 3), dtype=np.uint8)
     with Stage(width=width, height=height, unit=rollout.body_length) as stage:
         for number, (frame, moment) in enumerate(zip(frames, picked, strict=True), start=1):
             shown = figures(rollout, moment)
-            frame[:] = stage.draw([*shown, trail(rollout, moment)] if has_trail else shown, camera)
+            here = camera or following(rollout, moment, width / height)
+            frame[:] = stage.draw([*shown, trail(rollout, moment)] if has_trail else shown, here)
             if show is not None:
                 show(number / len(picked))
     return frames

@@ -28,6 +28,9 @@ def test_every_id_has_an_up_to_date_page(monkeypatch):
     assert {page.stem for page in PAGES.glob("*.md")} == set(pages)
     for name, text in pages.items():
         assert (PAGES / f"{name}.md").read_text() == text, "run scripts/document_environments.py"
+    readme = (ROOT / "README.md").read_text()
+    assert readme == document_environments.with_table(readme), "run scripts/document_environments.py"
+    assert readme.count("\n") <= 150
     for env_id in (*IDS, *GOAL_IDS):
         assert 0 < (ROOT / "docs" / "images" / f"{task_of(env_id).name}.gif").stat().st_size <= 400_000
 
