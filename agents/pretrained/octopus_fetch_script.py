@@ -6,12 +6,13 @@ counts the time, and infers from the goal whether the object is grabbed.
 
 import numpy as np
 
+from elastica_gym.bodies import octopus
+from elastica_gym.envs import task_of
 from elastica_gym.scripted.octopus_fetch import act, see
 
 CONTROL_DT = 0.05
 """Time between actions [s]"""
-THING, GOAL = [148, 150], [206, 207]
-"""Indices in the observation, forward and right, of the object and of the direction to go"""
+LAYOUT = task_of("elastica_gym/OctopusFetch-v1").layout(octopus())
 
 # memory: the file is executed once per episode
 steps = 0
@@ -27,5 +28,7 @@ def policy(observation: np.ndarray) -> np.ndarray:
 
 def has_grabbed(observation: np.ndarray) -> bool:
     """Return whether the direction to go differs from the direction to the object."""
-    to_object = observation[THING] / max(float(np.linalg.norm(observation[THING])), 1e-9)
-    return bool(np.abs(observation[GOAL] - to_object).max() > 1e-3)
+    # forward and right, without up
+    way = observation[LAYOUT["object/0/position"]][[0, 2]]
+    to_object = way / max(float(np.linalg.norm(way)), 1e-9)
+    return bool(np.abs(observation[LAYOUT["goal"]] - to_object).max() > 1e-3)

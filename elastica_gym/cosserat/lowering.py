@@ -54,6 +54,13 @@ def is_built_in(cls: type, methods: Sequence[str]) -> bool:
     return False
 
 
+NO_LOADS = {
+    *("_first", "_body", "_number", "_rods", "_planes", "_body_planes", "_pins", "_clamps", "_filters"),
+    *("_point_loads", "_joints"),
+}
+"""Collections of a builder that are not loads on all nodes of a rod"""
+
+
 class _Span(NamedTuple):
     first: int
     last: int
@@ -327,8 +334,12 @@ class SceneBuilder:
     @property
     def loading(self) -> int:
         """Where external loads other than planes on rods act: UNLOADED, SPARSE or DENSE."""
-        rows = (self._waves, self._flows, self._tensions, self._sides, self._rod_contacts, self._body_contacts)
-        if any(map(len, rows)) or self._dead_force.any() or self._dead_torque.any():
+        collections = {name: each for name, each in vars(self).items() if isinstance(each, (list, dict, set))}
+        if (
+            any(each for name, each in collections.items() if name not in NO_LOADS)
+            or self._dead_force.any()
+            or self._dead_torque.any()
+        ):
             return DENSE
         bodies = self._body_planes or self._body_force.any() or self._body_torque.any()
         return SPARSE if self._point_loads or self._joints or bodies else UNLOADED

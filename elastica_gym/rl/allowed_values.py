@@ -177,15 +177,6 @@ MAPPING = either(instance("a mapping such as {key: value}", dict), NONE)
 """A mapping written as a string is parsed first"""
 
 
-def _train_freq(value: Any) -> Any:
-    if isinstance(value, (list, tuple)):
-        count, unit = value
-        whole(1).read(count)
-        constant("step", "episode").read(unit)
-        return value
-    return whole(1).read(value)
-
-
 COMMON: dict[str, Allowed] = {
     "policy": instance("a name such as MlpPolicy, or module.Class", str),
     "n_envs": whole(1, highest=4096),
@@ -201,37 +192,6 @@ COMMON: dict[str, Allowed] = {
     "sde_sample_freq": whole(-1),
     "stats_window_size": whole(1),
 }
-ALLOWED: dict[str, dict[str, Allowed]] = {
-    "ppo": COMMON
-    | {
-        "n_epochs": whole(1),
-        "gae_lambda": FRACTION,
-        "clip_range": either(POSITIVE, prefixed("lin_", POSITIVE)),
-        "clip_range_vf": either(POSITIVE, prefixed("lin_", POSITIVE), NONE),
-        "normalize_advantage": TRUTH,
-        "ent_coef": NOT_NEGATIVE,
-        "vf_coef": NOT_NEGATIVE,
-        "max_grad_norm": POSITIVE,
-        "target_kl": either(POSITIVE, NONE),
-        "rollout_buffer_kwargs": MAPPING,
-    },
-    "sac": COMMON
-    | {
-        "buffer_size": whole(1),
-        "learning_starts": whole(0),
-        "tau": FRACTION,
-        "train_freq": Allowed("a whole number of steps, or [number, step] or [number, episode]", _train_freq),
-        "gradient_steps": whole(-1),
-        "optimize_memory_usage": TRUTH,
-        "ent_coef": either(NOT_NEGATIVE, constant("auto"), prefixed("auto_", POSITIVE)),
-        "target_update_interval": whole(1),
-        "target_entropy": either(ANY_NUMBER, constant("auto")),
-        "use_sde_at_warmup": TRUTH,
-        "replay_buffer_kwargs": MAPPING,
-    },
-}
-"""Allowed values of each configuration key, by algorithm"""
-
 NORMALIZE: dict[str, Allowed] = {
     "norm_obs": TRUTH,
     "norm_reward": TRUTH,
@@ -242,13 +202,13 @@ NORMALIZE: dict[str, Allowed] = {
 """Keys of ``normalize``, the arguments of ``VecNormalize``"""
 
 
-def policy_allowed(algo: str, known: set[str]) -> dict[str, Allowed]:
-    """Return the allowed values of ``policy_kwargs``, for the arguments `known` to the policy."""
+def policy_allowed(net_arch: Allowed, known: set[str]) -> dict[str, Allowed]:
+    """Return the allowed values of ``policy_kwargs``, for those arguments that are `known` to the policy."""
     from torch import nn
 
     anything = Allowed("anything", lambda value: value)
     rules = {
-        "net_arch": layers(("pi", "vf"), all_needed=False) if algo == "ppo" else layers(("pi", "qf"), all_needed=True),
+        "net_arch": net_arch,
         "activation_fn": subclass("a module of torch such as nn.Tanh", nn.Module),
         "log_std_init": ANY_NUMBER,
         "clip_mean": NOT_NEGATIVE,

@@ -15,10 +15,10 @@ from ..files import write_atomically
 from ..progress import Bar
 from ..scripted.families import GAITS, Gait, GaitPolicy, check_fits, describe, gait_for
 from . import curves
+from .budget import Budget
 from .evaluation import Evaluation, run_episodes
 from .run_files import GAIT, SEARCH, Table, read_table
 from .seeds import training_seeds
-from .training import Budget
 from .vec_env import BatchVecEnv, make_batch_vec_env
 
 GENERATIONS_BETWEEN_TRIALS = 10

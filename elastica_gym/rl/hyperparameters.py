@@ -10,10 +10,10 @@ import yaml
 
 from ..console.bad_input import BadInputError, choose
 from ..files import shipped
-from .allowed_values import ALLOWED, NORMALIZE, policy_allowed, read_mapping, read_value
+from .algorithms import ALGORITHMS
+from .allowed_values import COMMON, NORMALIZE, policy_allowed, read_mapping, read_value
 
 CONFIGS = shipped("configs")
-ALGORITHMS = ("ppo", "sac")
 OWN_KEYS = ("n_envs", "n_timesteps", "normalize", "env_kwargs")
 """Keys of rl_zoo3's format that are not arguments of the algorithm."""
 
@@ -40,7 +40,7 @@ def algorithm_class(algo: str) -> Any:
     """Return the Stable-Baselines3 class called `algo`."""
     import stable_baselines3
 
-    return getattr(stable_baselines3, choose("algorithm", algo, ALGORITHMS).upper())
+    return getattr(stable_baselines3, ALGORITHMS[choose("algorithm", algo, ALGORITHMS)].name)
 
 
 def valid_keys(algo: str) -> set[str]:
@@ -84,7 +84,7 @@ def checked(algo: str, values: dict[str, Any]) -> dict[str, Any]:
     BadInputError
         If a key is unknown or a value is not allowed; the message names both and the allowed values.
     """
-    allowed = ALLOWED[choose("algorithm", algo, ALGORITHMS)]
+    allowed = ALGORITHMS[choose("algorithm", algo, ALGORITHMS)].allowed
     kept = {}
     for key, value in values.items():
         rule = allowed[choose(f"key of the {algo} configuration", str(key), valid_keys(algo))]
@@ -105,7 +105,7 @@ def _check_parts(algo: str, values: dict[str, Any]) -> None:
     policy = policy_class(algo, values["policy"])
     read_mapping("normalize", _mapping(values, "normalize"), NORMALIZE)
     known = _arguments_of(policy) - SET_BY_POLICIES
-    read_mapping("policy_kwargs", _mapping(values, "policy_kwargs"), policy_allowed(algo, known))
+    read_mapping("policy_kwargs", _mapping(values, "policy_kwargs"), policy_allowed(ALGORITHMS[algo].net_arch, known))
     frequency = values.get("train_freq")
     if isinstance(frequency, (list, tuple)) and frequency[1] == "episode" and values.get("n_envs", 1) != 1:
         raise BadInputError(f"train_freq must be in steps where n_envs is not 1, got {frequency!r}")
@@ -140,7 +140,7 @@ def parse_overrides(assignments: list[str]) -> dict[str, Any]:
 
 def timesteps(values: dict[str, Any]) -> int:
     """Return the number of environment steps to train for."""
-    return read_value("n_timesteps", values.get("n_timesteps"), ALLOWED["ppo"]["n_timesteps"])
+    return read_value("n_timesteps", values.get("n_timesteps"), COMMON["n_timesteps"])
 
 
 def algorithm_arguments(values: dict[str, Any]) -> dict[str, Any]:
@@ -161,13 +161,10 @@ def algorithm_arguments(values: dict[str, Any]) -> dict[str, Any]:
 
 def policy_class(algo: str, name: str) -> Any:
     """Return the class of a policy: an alias of the algorithm, or ``module.Class``."""
-    from stable_baselines3.common.policies import ActorCriticPolicy
-    from stable_baselines3.sac.policies import SACPolicy
-
     if "." not in name:
         aliases = algorithm_class(algo).policy_aliases
         return aliases[choose("policy", name, aliases)]
-    found, base = _imported(name), ActorCriticPolicy if algo == "ppo" else SACPolicy
+    found, base = _imported(name), _imported(ALGORITHMS[algo].policy_base)
     if not (isinstance(found, type) and issubclass(found, base)):
         raise BadInputError(f"policy must be a subclass of {base.__name__} for {algo}, got {name!r}")
     return found

@@ -9,16 +9,15 @@ import random
 import signal
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 from typing import Any
 
 import numpy as np
 import torch
-from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
 
@@ -27,6 +26,8 @@ from ..envs import task_of
 from ..files import write_atomically
 from ..progress import Bar
 from . import cards, curves, transfer
+from .algorithms import ALGORITHMS
+from .budget import Budget
 from .checkpoints import checkpoint_folders, last_whole_checkpoint, write_checkpoint
 from .episodes import Episodes
 from .evaluation import evaluate
@@ -38,51 +39,7 @@ from .run_files import BEST, EVALUATIONS, METRICS, Table, read_table
 from .seeds import training_seeds
 from .vec_env import BatchVecEnv, make_batch_vec_env
 
-SAC_STEPS_PER_ITERATION = 512
-"""Environment steps per iteration of SAC, which updates its networks every few steps."""
-
-UPDATE_COLUMNS: dict[type, tuple[str, ...]] = {
-    PPO: (),
-    SAC: ("learning_rate", "n_updates", "ent_coef", "actor_loss", "critic_loss", "ent_coef_loss"),
-}
-"""Metrics of network updates; the first iterations, without updates, lack them"""
-
 REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
-
-
-class Budget:
-    """The limit of a run: environment steps, minutes, or whichever is reached first.
-
-    Parameters
-    ----------
-    steps
-        Environment steps, or None for no limit.
-    minutes
-        Wall-clock time of training and its evaluations, or None for no limit.
-    seconds_before
-        Time [s] spent before this process started.
-    free_steps
-        Environment steps of imitation, which the budget does not count.
-    """
-
-    def __init__(self, *, steps: int | None, minutes: float | None, seconds_before: float = 0.0, free_steps: int = 0):
-        self.steps = steps
-        self.minutes = minutes
-        self.free_steps = free_steps
-        self._started = time.monotonic() - seconds_before
-
-    @property
-    def seconds(self) -> float:
-        """Time spent [s]."""
-        return time.monotonic() - self._started
-
-    def fraction(self, steps_done: int, *, seconds_ahead: float = 0.0) -> float:
-        """Return the fraction of the budget spent, or that will be spent in `seconds_ahead`."""
-        by_steps = 0.0
-        if self.steps is not None:
-            by_steps = (steps_done - self.free_steps) / self.steps if self.steps else 1.0
-        by_time = 0.0 if self.minutes is None else (self.seconds + seconds_ahead) / (60.0 * self.minutes)
-        return min(1.0, max(by_steps, by_time))
 
 
 class Training:
@@ -201,7 +158,7 @@ class Training:
             "table_sizes": (self.metrics.size, self.evaluations.size),
         }
         (folder / "state.pkl").write_bytes(pickle.dumps(state))
-        if isinstance(self.model, SAC):
+        if isinstance(self.model, OffPolicyAlgorithm):
             self._save_replay_buffer(folder / "replay_buffer.npz")
 
     def _load_state(self, checkpoint: Path) -> dict[str, Any]:
@@ -211,7 +168,7 @@ class Training:
         normalize = self.model.get_vec_normalize_env()
         if normalize is not None:
             normalize.returns = state["discounted_returns"]
-        if isinstance(self.model, SAC):
+        if isinstance(self.model, OffPolicyAlgorithm):
             self._load_replay_buffer(checkpoint / "replay_buffer.npz")
         # generators last: creating a model seeds them
         torch.set_rng_state(state["torch"])
@@ -285,7 +242,7 @@ class Training:
         self._pass_points(self.spent)
 
     def _loop(self) -> bool:
-        iterate = ITERATIONS[type(self.model)]
+        iterate = ALGORITHMS[self.config["algo"]].iterate
         callback = self._begin()
         duration = 0.0
         self._evaluate_when_due(self.spent)
@@ -327,7 +284,7 @@ class Training:
             "distance": self.episodes.mean("distance"),
             "success": self.episodes.mean("success"),
             **{term: self.episodes.mean(term) for term in self.adapter.term_keys},
-            **dict.fromkeys(UPDATE_COLUMNS[type(self.model)]),
+            **dict.fromkeys(ALGORITHMS[self.config["algo"]].update_columns),
             **{key.removeprefix("train/"): _plain(v) for key, v in self.model.logger.name_to_value.items()},
         }
         self.model.logger.dump(self.model.num_timesteps)
@@ -426,35 +383,6 @@ class Training:
         """The newest checkpoint, or None."""
         folders = checkpoint_folders(self.folder / "checkpoints")
         return folders[-1] if folders else None
-
-
-def iterate_ppo(model: PPO, callback: BaseCallback, budget: Budget) -> None:
-    """Collect ``n_steps`` steps of every environment and update the networks from them."""
-    model.collect_rollouts(model.env, callback, model.rollout_buffer, n_rollout_steps=model.n_steps)  # type: ignore[arg-type]
-    model._current_progress_remaining = 1.0 - budget.fraction(model.num_timesteps)
-    model.train()
-
-
-def iterate_sac(model: SAC, callback: BaseCallback, budget: Budget) -> None:
-    """Alternate ``train_freq`` steps and network updates, for `SAC_STEPS_PER_ITERATION` steps."""
-    end = model.num_timesteps + SAC_STEPS_PER_ITERATION
-    while model.num_timesteps < end:
-        collected = model.collect_rollouts(
-            model.env,  # type: ignore[arg-type]
-            callback,
-            train_freq=model.train_freq,  # type: ignore[arg-type]
-            replay_buffer=model.replay_buffer,  # type: ignore[arg-type]
-            action_noise=model.action_noise,
-            learning_starts=model.learning_starts,
-            log_interval=None,
-        )
-        model._current_progress_remaining = 1.0 - budget.fraction(model.num_timesteps)
-        updates = model.gradient_steps if model.gradient_steps >= 0 else collected.episode_timesteps
-        if model.num_timesteps > model.learning_starts and updates > 0:
-            model.train(gradient_steps=updates, batch_size=model.batch_size)
-
-
-ITERATIONS: dict[type, Callable[[Any, BaseCallback, Budget], None]] = {PPO: iterate_ppo, SAC: iterate_sac}
 
 
 def _plain(value: Any) -> int | float:

@@ -106,6 +106,13 @@ def test_different_seeds_give_different_returns(env_id, make_vec):
     assert len(set(rewards.sum(axis=0))) == 8
 
 
+def test_every_declared_observation_is_written(env_id, make_vec):
+    env = make_vec(env_id, 2)
+    env._observations[:] = np.nan
+    observations, _ = env.reset(seed=0)
+    assert np.isfinite(observations).all()
+
+
 def test_no_observation_is_constant(env_id, make_vec):
     env = make_vec(env_id, 16, duration=2.0)
     seen, _, _ = roll(env, random_actions(env_id, 5, 40, 16), 0)

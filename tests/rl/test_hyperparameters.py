@@ -9,13 +9,13 @@ from torch import nn
 from elastica_gym.console.bad_input import BadInputError
 from elastica_gym.envs import IDS
 from elastica_gym.rl import hyperparameters
-from elastica_gym.rl.allowed_values import ALLOWED
+from elastica_gym.rl.algorithms import ALGORITHMS
 from elastica_gym.rl.vec_env import make_batch_vec_env
 from elastica_gym.versions import lowest_of
 from tests.agents.commands import FORWARD, ROOT
 
 
-@pytest.mark.parametrize("algo", hyperparameters.ALGORITHMS)
+@pytest.mark.parametrize("algo", ALGORITHMS)
 def test_every_environment_has_hyperparameters(algo):
     for env_id in IDS:
         values = hyperparameters.load(algo, env_id)
@@ -85,9 +85,9 @@ def test_lowest_versions_are_those_of_the_package():
         assert {f"{package}>={lowest}" for package, lowest in lowest_of(extra).items()} == set(groups[extra])
 
 
-@pytest.mark.parametrize("algo", hyperparameters.ALGORITHMS)
+@pytest.mark.parametrize("algo", ALGORITHMS)
 def test_every_key_has_allowed_values(algo):
-    assert set(ALLOWED[algo]) == hyperparameters.valid_keys(algo)
+    assert set(ALGORITHMS[algo].allowed) == hyperparameters.valid_keys(algo)
 
 
 def test_numbers_that_yaml_reads_as_strings_are_converted():
@@ -114,7 +114,7 @@ def envs():
     return make_batch_vec_env(FORWARD, n_envs=2, n_threads=1)
 
 
-@pytest.mark.parametrize("algo", hyperparameters.ALGORITHMS)
+@pytest.mark.parametrize("algo", ALGORITHMS)
 @given(data=st.data())
 @settings(max_examples=150, suppress_health_check=[HealthCheck.too_slow])
 def test_values_are_refused_in_one_line_or_make_a_model(envs, algo, data):

@@ -1,0 +1,5 @@
+"""``python -m elastica_gym.commands`` is ``elastica-gym``."""
+
+from . import main
+
+main()
