@@ -48,14 +48,14 @@ class Algorithm(NamedTuple):
     """Columns of metrics.csv that the first iterations, which may be without an update, do not have"""
 
 
-def iterate_ppo(model: Any, callback: BaseCallback, budget: Budget) -> None:
+def iterate_ppo(model: Any, callback: "BaseCallback", budget: Budget) -> None:
     """Collect ``n_steps`` steps of every environment and update the networks from them."""
     model.collect_rollouts(model.env, callback, model.rollout_buffer, n_rollout_steps=model.n_steps)
     model._current_progress_remaining = 1.0 - budget.fraction(model.num_timesteps)
     model.train()
 
 
-def iterate_sac(model: Any, callback: BaseCallback, budget: Budget) -> None:
+def iterate_sac(model: Any, callback: "BaseCallback", budget: Budget) -> None:
     """Alternate ``train_freq`` steps and network updates, for `SAC_STEPS_PER_ITERATION` steps."""
     end = model.num_timesteps + SAC_STEPS_PER_ITERATION
     while model.num_timesteps < end:
