@@ -1,24 +1,21 @@
 """Open a recording of an episode in the rerun viewer."""
 
 import dataclasses
-import importlib.util
 import os
 import signal
 import socket
 import subprocess
 import sys
 import threading
-import urllib.parse
 from pathlib import Path
 
 import tyro
 
-from ..console.bad_input import BadInputError
+from ..console.bad_input import BadInputError, require_extra
+from ..viz.viewer import ENVIRONMENT, LOOPBACK, page_url, viewer_program
 from . import invocation, parse
 
-LOOPBACK = "127.0.0.1"
 MAGIC = b"RRF"
-ENVIRONMENT = {"RUST_LOG": "warn", "RERUN_APP_ONLY": "true", "NO_COLOR": "1", **os.environ}
 
 
 @dataclasses.dataclass
@@ -48,6 +45,7 @@ def main() -> None:
 
 def check_recording(path: Path) -> None:
     """Raise a BadInputError unless the path holds a complete recording and rerun is installed."""
+    require_extra("viz")
     if not path.exists():
         raise BadInputError(f"there is no file {path}")
     if not path.is_file():
@@ -61,7 +59,7 @@ def check_recording(path: Path) -> None:
         raise BadInputError(f"{path} is not a rerun recording")
     # in a subprocess, since some damaged files make the reader abort
     command = [*viewer_program(), "rrd", "verify", str(path)]
-    verdict = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True)
+    verdict = subprocess.run(command, env={**ENVIRONMENT, **os.environ}, capture_output=True, text=True)
     if verdict.returncode != 0:
         reasons = [line for line in verdict.stderr.splitlines() if line.strip()] or ["rerun cannot read it"]
         raise BadInputError(f"{path} is damaged or cut short: {reasons[0]}")
@@ -79,8 +77,7 @@ def serve(path: Path, *, page: int, data: int) -> int:
     """Serve the recording to browsers on this machine until Ctrl-C."""
     for name, port in (("--port", page), ("--data-port", data)):
         require_free(name, port)
-    source = urllib.parse.quote(f"rerun+http://{LOOPBACK}:{data}/proxy", safe="")
-    print(f"Open http://{LOOPBACK}:{page}/?url={source}", flush=True)
+    print(f"Open {page_url(page, data)}", flush=True)
     print(f"From another machine, first: ssh -L {page}:{LOOPBACK}:{page} -L {data}:{LOOPBACK}:{data} <this machine>")
     print("Ctrl-C stops.", flush=True)
     ports = ["--port", str(data), "--web-viewer-port", str(page)]
@@ -113,7 +110,9 @@ def run_viewer(arguments: list[str]) -> int:
     for name in {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal)):
         signal.signal(getattr(signal, name), lambda *_: interrupted.set())
     # a new session: Ctrl-C reaches only this script, which then stops the viewer
-    viewer = subprocess.Popen([*viewer_program(), *arguments], env=ENVIRONMENT, start_new_session=True)
+    viewer = subprocess.Popen(
+        [*viewer_program(), *arguments], env={**ENVIRONMENT, **os.environ}, start_new_session=True
+    )
     while viewer.poll() is None and not interrupted.wait(timeout=0.2):
         pass
     if not interrupted.is_set():
@@ -126,12 +125,3 @@ def run_viewer(arguments: list[str]) -> int:
         viewer.wait()
     print("\nstopped", flush=True)
     return 0
-
-
-def viewer_program() -> list[str]:
-    """Return the command that runs the program of this Python's rerun."""
-    spec = importlib.util.find_spec("rerun_cli")
-    if spec is None or spec.origin is None:
-        raise BadInputError("recordings need rerun: pip install 'elastica-gym[viz]'")
-    program = Path(spec.origin).with_name("rerun.exe" if sys.platform == "win32" else "rerun")
-    return [str(program)] if program.is_file() else [sys.executable, "-m", "rerun_cli"]

@@ -1,9 +1,10 @@
 """Train an agent: ``python -m agents.train --env elastica_gym/SnakeForward-v1 --algo ppo``."""
 
 import dataclasses
+import importlib.util
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..console.bad_input import (
     BadInputError,
@@ -11,11 +12,16 @@ from ..console.bad_input import (
     choose_environment,
     fail,
     make_folder,
+    missing_extra,
     require_extra,
 )
 from ..rl.run_files import BEST
 from ..rl.seeds import RUNS, VALIDATION, check_seeds
 from . import invocation, parse
+from .replay import has_display
+
+if TYPE_CHECKING:
+    from ..viz.viewer import LiveView
 
 
 @dataclasses.dataclass
@@ -59,6 +65,12 @@ class TrainArguments:
     """Evaluation episodes recorded for rerun at the end."""
     checkpoint_minutes: float = 1.0
     """Time between checkpoints; 0 writes one after every update."""
+    rerun: bool = False
+    """Show evaluations, curves and reward terms in rerun's window while training continues."""
+    rerun_web: bool = False
+    """The same in a browser on this machine."""
+    tensorboard: bool = False
+    """Write event files for TensorBoard into the run's folder."""
     out: Path = Path("runs")
     """Folder of all runs."""
     folder: Path | None = None
@@ -89,11 +101,16 @@ def main() -> None:
         from ..files import write_atomically
         from ..rl.training import Training
 
-        training = Training(folder, config, resume=arguments.resume is not None)
+        live = _live_view(arguments, folder)
+        training = Training(
+            folder, config, resume=arguments.resume is not None, live=live, tensorboard=arguments.tensorboard
+        )
     # written after setup, so that refused arguments leave the folder free
     text = yaml.safe_dump(config, sort_keys=False)
     write_atomically(folder / "config.yml", lambda path: path.write_text(text))
     print(f"Training {config['algo']} on {config['env']}, seed {config['seed']}, into {folder}")
+    if live is not None:
+        print(f"Watch it: {live.address}")
     try:
         finished = training.run()
     except (OSError, KeyboardInterrupt) as error:
@@ -103,6 +120,9 @@ def main() -> None:
         kept = training.last_checkpoint
         hint = f". The checkpoint {kept} is intact; continue with: {_resume_command(folder)}" if kept else ""
         fail(what + hint, status=130 if what == "interrupted" else 1)
+    finally:
+        if live is not None:
+            live.close()
     if not finished:
         print(f"Saved. Continue with: {_resume_command(folder)}")
         raise SystemExit(130)
@@ -110,6 +130,23 @@ def main() -> None:
     if (folder / BEST).exists():
         print(f"The model with the best evaluation is in {folder / BEST}")
     print(f"Evaluate it with: {invocation('evaluate')} --run {folder}")
+
+
+def _live_view(arguments: TrainArguments, folder: Path) -> "LiveView | None":
+    """Open the viewer that was asked for; without one, training goes on unwatched."""
+    if arguments.tensorboard and importlib.util.find_spec("tensorboard") is None:
+        raise BadInputError("tensorboard is not installed: pip install tensorboard")
+    if not (arguments.rerun or arguments.rerun_web):
+        return None
+    if message := missing_extra("viz"):
+        print(f"No viewer: {message}")
+        return None
+    if arguments.rerun and not has_display():
+        print("No viewer: there is no display to open a window on; --rerun-web shows the same in a browser.")
+        return None
+    from ..viz.viewer import LiveView
+
+    return LiveView(f"{folder.parent.name}/{folder.name}", web=arguments.rerun_web)
 
 
 def _resume_command(folder: Path) -> str:
@@ -154,7 +191,7 @@ def _start(start: str | None) -> str | None:
     return str(Path(start).resolve())
 
 
-_NOT_IN_CONFIG = {"set", "n_envs", "out", "folder", "resume"}
+_NOT_IN_CONFIG = {"set", "n_envs", "out", "folder", "resume", "rerun", "rerun_web", "tensorboard"}
 
 
 def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:

@@ -9,14 +9,15 @@ import random
 import signal
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
 from stable_baselines3.common.callbacks import BaseCallback
-from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.logger import KVWriter, Logger, TensorBoardOutputFormat
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
@@ -35,9 +36,12 @@ from .films import record, recording_name
 from .hyperparameters import algorithm_arguments, algorithm_class, normalize_arguments
 from .imitation import CRITIC_UPDATES, critic_alone, imitate
 from .policies import TrainedPolicy, load_model, load_normalization, load_run, use_one_thread
-from .run_files import BEST, EVALUATIONS, METRICS, Table, read_table
+from .run_files import BEST, EVALUATIONS, METRICS, TENSORBOARD, Table, read_table
 from .seeds import training_seeds
 from .vec_env import BatchVecEnv, make_batch_vec_env
+
+if TYPE_CHECKING:
+    from ..viz.viewer import LiveView
 
 REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
 
@@ -51,11 +55,23 @@ class Training:
         The run's existing folder.
     config
         Contents of ``config.yml``.
+    live
+        A viewer that shows evaluations while training goes on, or None.
+    tensorboard
+        Whether to write event files for TensorBoard into the run's folder.
     resume
         Whether to continue from the folder's last intact checkpoint.
     """
 
-    def __init__(self, folder: Path, config: dict[str, Any], *, resume: bool):
+    def __init__(
+        self,
+        folder: Path,
+        config: dict[str, Any],
+        *,
+        resume: bool,
+        live: "LiveView | None" = None,
+        tensorboard: bool = False,
+    ):
         self.folder = folder
         self.config = config
         use_one_thread()
@@ -69,7 +85,9 @@ class Training:
             self._known_env = self._take_over(config["start_from"])
         # the model seeded them with consecutive seeds, most of which other runs would share
         self.adapter.seed(training_seeds(config["seed"], 0, self.adapter.num_envs))
-        self.model.set_logger(Logger(folder=None, output_formats=[]))
+        outputs: list[KVWriter] = [TensorBoardOutputFormat(str(folder / TENSORBOARD))] if tensorboard else []
+        self.model.set_logger(Logger(folder=None, output_formats=outputs))
+        self._live = live
         self.episodes = Episodes(longest=self.adapter.batch.max_episode_steps, window=self.model._stats_window_size)
         if checkpoint is not None:
             saved = self._load_state(checkpoint)
@@ -213,6 +231,7 @@ class Training:
             self.metrics.close()
             self.evaluations.close()
             self.adapter.close()
+            self.model.logger.close()
         return finished
 
     def _compile(self) -> None:
@@ -287,10 +306,39 @@ class Training:
             **dict.fromkeys(ALGORITHMS[self.config["algo"]].update_columns),
             **{key.removeprefix("train/"): _plain(v) for key, v in self.model.logger.name_to_value.items()},
         }
-        self.model.logger.dump(self.model.num_timesteps)
+        self._log({"rollout/ep_rew_mean": row["return"], "rollout/ep_len_mean": row["length"],
+                   "rollout/success_rate": row["success"], "time/fps": steps_per_second})  # fmt: skip
         self.metrics.append(row)
+        self._show(lambda live: live.log_numbers(row["steps"], _numbers("training", row)))
         shown = ("steps", "steps_per_second", "return", "distance", "success")
         self.display.show(self.spent, {key.replace("steps_per_second", "steps/s"): row[key] for key in shown})
+
+    def _log(self, values: dict[str, float]) -> None:
+        """Write values, and what the algorithm has recorded, to the logger's outputs."""
+        for name, value in values.items():
+            if np.isfinite(value):
+                self.model.logger.record(name, value)
+        self.model.logger.dump(self.model.num_timesteps)
+
+    def _show(self, show: Callable[["LiveView"], None]) -> None:
+        """Send something to the viewer, if there is one; its failures never stop a training."""
+        if self._live is None:
+            return
+        try:
+            show(self._live)
+        except Exception as error:
+            self._live = None
+            self.display.say(f"The viewer is no longer used: {error}")
+
+    def _show_episode(self, live: "LiveView") -> None:
+        """Show the first episode of the evaluation, played once more."""
+        from ..viz import run_rollout
+
+        policy, seed = self._policy(), self.config["evaluation_seed"]
+        policy.reset([seed])
+        kwargs = self.config["hyperparameters"].get("env_kwargs") or {}
+        rollout = run_rollout(self.config["env"], policy, seed=seed, **kwargs)
+        live.log_episode(rollout, f"evaluation at {self.model.num_timesteps:,} steps")
 
     @property
     def spent(self) -> float:
@@ -331,6 +379,10 @@ class Training:
         if result["return_mean"] > read_table(self.folder / EVALUATIONS).get("return", np.array([-np.inf])).max():
             self._save_best()
         self.evaluations.append(row)
+        scores = {"mean_reward": row["return"], "mean_ep_length": row["length"], "success_rate": row["success"]}
+        self._log({f"eval/{name}": value for name, value in scores.items()})
+        self._show(lambda live: live.log_numbers(row["steps"], _numbers("evaluation", row)))
+        self._show(self._show_episode)
         self.display.say(
             f"evaluation at {self.model.num_timesteps:,} steps: return {row['return']:.3f} ± {row['return_ci95']:.3f}, "
             f"distance {row['distance']:.3f} m, success {row['success']:.0%}"
@@ -387,6 +439,16 @@ class Training:
 
 def _plain(value: Any) -> int | float:
     return value if isinstance(value, int) else float(value)
+
+
+def _numbers(group: str, row: dict[str, Any]) -> dict[str, float]:
+    """Return the finite numbers of a row by entity, ``reward_x`` as ``group/reward/x``."""
+    kept = {key: value for key, value in row.items() if key not in ("steps", "seconds") and value is not None}
+    return {
+        f"{group}/{key.replace('reward_', 'reward/', 1) if key.startswith('reward_') else key}": float(value)
+        for key, value in kept.items()
+        if np.isfinite(value)
+    }
 
 
 def _observation_names(env_id: str) -> tuple[str, ...]:

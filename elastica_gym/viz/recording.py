@@ -107,17 +107,18 @@ def write_recording(rollout: Rollout, path: str | Path) -> Path:
     OSError
         If the file cannot be written: the folder is not writable or the disk full.
     """
+    return write_stream(lambda stream: log_rollout(stream, rollout, rollout.name), Path(path))
 
-    def log(stream: "rr.RecordingStream") -> None:
-        stream.send_blueprint(_blueprint(rollout))
-        stream.send_recording_name(rollout.name)
-        _log_scene(stream, rollout)
-        _log_animal(stream, rollout)
-        _log_head(stream, rollout)
-        _log_objects(stream, rollout)
-        _log_series(stream, rollout)
 
-    return write_stream(log, Path(path))
+def log_rollout(stream: "rr.RecordingStream", rollout: Rollout, name: str) -> None:
+    """Send a rollout with its layout to a stream, as a recording with a name."""
+    stream.send_blueprint(_blueprint(rollout))
+    stream.send_recording_name(name)
+    _log_scene(stream, rollout)
+    _log_animal(stream, rollout)
+    _log_head(stream, rollout)
+    _log_objects(stream, rollout)
+    _log_series(stream, rollout)
 
 
 def write_stream(log: Callable[["rr.RecordingStream"], None], path: Path) -> Path:
