@@ -37,7 +37,10 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
 
 def force_to_disk(path: Path) -> None:
     """Sync a file or folder to disk."""
-    descriptor = os.open(path, os.O_RDONLY)
+    if os.name == "nt" and path.is_dir():
+        # Windows syncs files only
+        return
+    descriptor = os.open(path, os.O_RDWR if os.name == "nt" else os.O_RDONLY)
     try:
         os.fsync(descriptor)
     finally:

@@ -39,9 +39,9 @@ def cache_folder() -> Path:
     for source in sorted(path for pattern in SOURCES for path in ENGINE.glob(pattern)):
         key.update(source.read_bytes())
     name = key.hexdigest()[:20]
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     asked = os.environ.get(CACHE_VARIABLE)
-    for root in [Path(asked)] if asked else [home / "elastica_gym", Path(tempfile.gettempdir()) / "elastica_gym"]:
+    places = [Path(asked)] if asked else [_user_cache() / "elastica_gym", Path(tempfile.gettempdir()) / "elastica_gym"]
+    for root in places:
         folder = root / name
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -51,6 +51,15 @@ def cache_folder() -> Path:
         else:
             return folder
     raise OSError(f"cannot write compiled kernels to {folder}: {reason}; set {CACHE_VARIABLE} to a writable folder")
+
+
+def _user_cache() -> Path:
+    """Return the folder that the system has for caches of this user."""
+    if chosen := os.environ.get("XDG_CACHE_HOME"):
+        return Path(chosen)
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    return Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")
 
 
 def _package_version() -> str:
