@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/environment.sh
-install_into_venv train,viz,test,bench
+install_into_venv train,viz,test,bench,docs
 
 select=(-m "not slow")
 if [ "${1:-}" = --slow ]; then
@@ -14,5 +14,6 @@ fi
 .venv/bin/ruff format --check .
 .venv/bin/lint-imports
 .venv/bin/mypy
+.venv/bin/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
 .venv/bin/python scripts/benchmark.py --start
 .venv/bin/python -m pytest -n 2 "${select[@]}" "$@"
