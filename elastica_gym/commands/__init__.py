@@ -23,13 +23,14 @@ COMMANDS = {
     "search": "a gait by CMA-ES",
     "score": "a policy on the goals of the 2020 hackathon",
     "replay": "a recording in the rerun viewer",
+    "record": "episodes of a policy as a Minari dataset",
     "publish": "a run as a pretrained policy with a card",
     "plot_curves": "learning curves over seeds as one picture",
     "bench": "environment steps per second on this machine",
     "doctor": "versions, compiled kernels, drawing, threads",
 }
 """Name of each command, and what it does with or shows"""
-IN_AGENTS = ("train", "evaluate", "search", "publish", "plot_curves")
+IN_AGENTS = ("train", "evaluate", "search", "publish", "plot_curves", "record")
 """Commands that a clone has as modules of ``agents``"""
 
 
