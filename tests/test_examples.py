@@ -80,7 +80,7 @@ def test_a_sweep_is_compared_and_not_repeated(tmp_path):
 @pytest.mark.parametrize("env_id", ["my_task:my_lab/SnakeTurn-v0", "my_body:my_lab/WormForward-v0"])
 def test_a_task_and_a_body_of_ones_own_are_trained_and_evaluated(env_id, tmp_path):
     config = tmp_path / "config.yml"
-    config.write_text(f"{env_id}:\n  n_envs: 2\n  n_timesteps: 80\n  policy: MlpPolicy\n")
+    config.write_text(f"{env_id.partition(':')[2]}:\n  n_envs: 2\n  n_timesteps: 80\n  policy: MlpPolicy\n")
     run("-m", "agents.train", "--env", env_id, "--config", config, "--steps", 80, *SMALL_PPO, "--folder",
         tmp_path / "run", folder=ROOT)  # fmt: skip
     run("-m", "agents.evaluate", "--run", tmp_path / "run", "--episodes", 2, folder=ROOT)

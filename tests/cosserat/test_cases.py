@@ -52,10 +52,10 @@ def test_helical_buckling_converges_with_second_order(load):
     assert -np.polyfit(np.log(sizes), np.log(errors), 1)[0] == pytest.approx(2.0, abs=0.2)
 
 
-def test_first_script_of_the_readme(capsys):
-    text = (CASES.parents[1] / "README.md").read_text()
+def test_first_script_of_the_documentation(capsys):
+    text = (CASES.parents[1] / "docs" / "library.md").read_text()
     (block,) = [each for each in re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL) if "Simulator" in each]
-    exec(compile(block, "README.md", "exec"), {"__name__": "readme"})
+    exec(compile(block, "library.md", "exec"), {"__name__": "readme"})
     assert "[" in capsys.readouterr().out
 
 

@@ -500,7 +500,7 @@ def test_progress_is_shown_on_request(capfd):
     sim, _ = moving()
     for wanted in (True, False):
         ea.integrate(ea.PositionVerlet(), sim, 50 * DT, 50, progress_bar=wanted)
-        assert ("100.0 %  50 of 50 steps" in capfd.readouterr().err) == wanted
+        assert ("integrating ..." in capfd.readouterr().err) == wanted
 
 
 def test_order_of_the_steppers():

@@ -85,7 +85,7 @@ def test_missing_rods_are_named(wrong, message):
 
 
 def test_arguments_of_a_joint_are_checked():
-    with pytest.raises(ValueError, match="each end 0 or -1, not"):
+    with pytest.raises(ValueError, match="with ends 0 or -1, not"):
         Joint(rods=(0, 1), ends=(1, 0), stiffness=1.0)
     with pytest.raises(ValueError, match="stiffness must be"):
         Joint(rods=(0, 1), ends=(0, 0), stiffness=0.0)

@@ -129,7 +129,8 @@ shape = {
     "share": types.UniTuple(row, 2), "weight": types.UniTuple(row, 2),
 }
 for stage in (kinematics.kinematics, strains.stretch, strains.strains, curvature.relative_rotation, curvature.logarithm,
-              curvature.bending, plane.touch, plane.slip, plane.slide, plane.stick, dynamics.dynamics):
+              curvature.bending, plane.normal_response, plane.slip_velocity, plane.kinetic_friction,
+              plane.static_friction, dynamics.dynamics):
     stage.compile(tuple(shape.get(name, row) for name in inspect.signature(stage.py_func).parameters))
     code = "".join(stage.inspect_asm().values())
     print(stage.py_func.__name__, len(re.findall(r"vfn?m(?:add|sub)\\d+pd.*[yz]mm", code)))

@@ -292,6 +292,7 @@ def test_invalid_arguments_raise_at_construction(env_id, kwargs, message):
         BatchEnv(task_of(env_id), **kwargs)
 
 
+@pytest.mark.parametrize("env_id", ["elastica_gym/SnakeReach-v1", "elastica_gym/OctopusFetch-v1"])
 def test_four_thousand_animals_at_once(env_id, make_vec):
     env = make_vec(env_id, 4096, control_dt=1e-3, duration=0.002, autoreset_mode=AutoresetMode.SAME_STEP)
     env.reset(seed=0)

@@ -9,7 +9,7 @@ from elastica_gym.scripted.gaits import snake_crawl
 
 from .conftest import still
 
-SEEDS = 20
+SEEDS = 12
 
 
 def returns(env, act):

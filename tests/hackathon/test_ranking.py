@@ -1,38 +1,51 @@
 """Ranking a folder of submissions."""
 
 import csv
-import os
-import subprocess
 import sys
 
+import pytest
+
+from elastica_gym.console.bad_input import BadInputError
+from elastica_gym.hackathon import judge
+from elastica_gym.hackathon.scoring import GOALS
 from tests.agents.commands import ROOT
 
-STILL = "import numpy as np\n\n\ndef policy(observation):\n    return np.zeros(42)\n"
-BROKEN = "def policy(observation):\n    raise ValueError('tired')\n"
+TOTALS = {"good.py": 80.0, "also_good.py": 80.0, "fair.zip": 30.0}
 
 
-def run(*arguments, status=0):
-    command = [sys.executable, str(ROOT / "scripts" / "rank.py"), *map(str, arguments)]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "200"}
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=600)
-    assert done.returncode == status, done.stderr
-    return done.stdout + done.stderr
+@pytest.fixture
+def ranking(monkeypatch):
+    """Return the script, with a judge that knows the totals."""
+    monkeypatch.syspath_prepend(str(ROOT / "scripts"))
+    import rank
+
+    def known(path, env_id, *, targets, target_seed, n_threads):
+        if path.name == "damaged.py":
+            raise BadInputError("no function policy")
+        error = "" if path.name in TOTALS else "too slow"
+        goals = dict.fromkeys((*GOALS, "general"), 0.0)
+        return {"total": TOTALS.get(path.name, 0.0), **goals, "error": error}
+
+    monkeypatch.setattr(judge, "judge", known)
+    return rank
 
 
-def test_submissions_are_ranked_and_failures_keep_their_row(tmp_path):
-    (tmp_path / "still.py").write_text(STILL)
-    (tmp_path / "broken.py").write_text(BROKEN)
-    (tmp_path / "notes.txt").write_text("no submission")
-    script = ROOT / "agents" / "pretrained" / "octopus_fetch_script.py"
-    (tmp_path / "fetch.py").write_text(script.read_text())
-    output = run(tmp_path, "--targets", 1, "--target-seed", 7, "--out", tmp_path / "new" / "ranking.csv")
-    rows = list(csv.DictReader((tmp_path / "new" / "ranking.csv").open()))
-    assert [row["submission"] for row in rows] == ["fetch.py", "broken.py", "still.py"]
-    assert [row["rank"] for row in rows] == ["1", "2", "2"]
-    assert float(rows[0]["points"]) > 0.0 == float(rows[1]["points"])
-    assert "tired" in rows[1]["error"] and rows[2]["error"] == ""
-    assert "ranking.csv" in output
+def test_submissions_are_ranked_and_failures_keep_their_row(ranking, tmp_path, monkeypatch, capsys):
+    for name in (*TOTALS, "slow.py", "damaged.py", "notes.txt"):
+        (tmp_path / name).write_text("")
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "config.yml").write_text("")
+    out = tmp_path / "new" / "ranking.csv"
+    monkeypatch.setattr(sys, "argv", ["rank.py", str(tmp_path), "--out", str(out)])
+    ranking.main()
+    rows = list(csv.DictReader(out.open()))
+    assert [(row["rank"], row["submission"]) for row in rows] == [
+        ("1", "also_good.py"), ("1", "good.py"), ("3", "fair.zip"), ("4", "damaged.py"), ("4", "run"), ("4", "slow.py"),
+    ]  # fmt: skip
+    assert rows[3]["error"] == "no function policy" and rows[5]["error"] == "too slow"
+    assert "ranking.csv" in capsys.readouterr().out
 
 
-def test_a_folder_without_submissions_is_refused(tmp_path):
-    assert "folder must hold submissions" in run(tmp_path, status=2)
+def test_a_folder_without_submissions_is_refused(ranking, tmp_path):
+    with pytest.raises(BadInputError, match="folder must hold submissions"):
+        ranking.submissions(tmp_path)
