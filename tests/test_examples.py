@@ -50,6 +50,7 @@ def test_stable_baselines3(tmp_path):
     assert (tmp_path / "snake_ppo.zip").exists()
 
 
+@pytest.mark.slow
 def test_hindsight(tmp_path):
     run(EXAMPLES / "hindsight.py", "--steps", 1700, "--num-envs", 4, "--learning-starts", 1600, folder=tmp_path)
     assert (tmp_path / "snake_her.zip").exists()

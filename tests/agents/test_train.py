@@ -217,6 +217,7 @@ def test_statistics_of_new_observations():
     assert transfer.statistics(known, 2, [0, 1]) is known
 
 
+@pytest.mark.slow
 def test_a_minute_is_a_budget(tmp_path, monkeypatch):
     # a clock that advances by a second per reading, so that nothing depends on the machine
     seconds = itertools.count()
