@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from elastica_gym.console.bad_input import make_folder, run_command
-from elastica_gym.envs import GOAL_IDS, IDS, document, task_of
+from elastica_gym.envs import GOAL_IDS, IDS, document, observation_names, task_of
 from elastica_gym.rl import cards
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -48,10 +48,9 @@ def index(ids: tuple[str, ...]) -> str:
     rows = ["| environment | task | observation | action | shipped policy | score | minutes |", "|" + "---|" * 7]
     for env_id in ids:
         task = task_of(env_id)
-        body = task.make_body()
-        card = next(iter(_cards(env_id)), None)
+        card = next(iter(cards.cards_of(env_id)), None)
         name = f"[{task.name}]({task.name}.md)"
-        sizes = f"{len(task.layout(body).names)} | {body.n_activations}"
+        sizes = f"{len(observation_names(env_id))} | {task.make_body().n_activations}"
         score = f"`{card['name']}` | {best_score(card)} | {card['wall_time_minutes']:.0f}" if card else " | | "
         rows.append(f"| {name} | {_summary(task)} | {sizes} | {score} |")
     tree = ["```{toctree}", ":hidden:", "", *(task_of(env_id).name for env_id in ids), "```"]
@@ -69,12 +68,11 @@ def with_table(readme: str) -> str:
     rows = ["| | environment | task | observation, action | best score | minutes |", "|" + "---|" * 6]
     for env_id in (*IDS, *GOAL_IDS):
         task = task_of(env_id)
-        body = task.make_body()
-        card = next(iter(_cards(env_id)), None)
+        card = next(iter(cards.cards_of(env_id)), None)
         score = f"{best_score(card)} | {card['wall_time_minutes']:.0f}" if card else " | "
         picture = f'<img src="docs/images/{task.name}.gif" width="150" alt="{task.name}">'
         link = f"[`{env_id}`](docs/environments/{task.name}.md)"
-        sizes = f"{len(task.layout(body).names)}, {body.n_activations}"
+        sizes = f"{len(observation_names(env_id))}, {task.make_body().n_activations}"
         rows.append(f"| {picture} | {link} | {_summary(task)} | {sizes} | {score} |")
     return before + BEGIN + "\n" + "\n".join(rows) + "\n\n" + end + after
 
@@ -92,11 +90,6 @@ def best_score(card: dict[str, Any]) -> str:
     return f"{score['success_rate']:.0%}"
 
 
-def _cards(env_id: str) -> list[dict[str, Any]]:
-    found = [cards.read_card(name) for name in cards.names()]
-    return [card for card in found if card["environment"] == env_id]
-
-
 def _animation(env_id: str) -> str:
     name = task_of(env_id).name
     return f"![An episode of {name}](../images/{name}.gif)"
@@ -104,7 +97,7 @@ def _animation(env_id: str) -> str:
 
 def _results(env_id: str) -> list[str]:
     """Return the scores of shipped policies, how they were trained, and the learning curve."""
-    found = _cards(env_id)
+    found = cards.cards_of(env_id)
     if not found:
         return ["## Results", f"No policy ships for this environment; it is made for {HINDSIGHT}."]
     rows = ["| policy | success | return | distance [m] | steps | minutes |", "|" + "---|" * 6]

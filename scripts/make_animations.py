@@ -78,7 +78,7 @@ def shipped_policy(env_id: str) -> str:
     """Return the name of the policy that ships for an environment, or ``scripted``."""
     from elastica_gym.rl import cards
 
-    return next((name for name in cards.names() if cards.read_card(name)["environment"] == env_id), "scripted")
+    return next((card["name"] for card in cards.cards_of(env_id)), "scripted")
 
 
 if __name__ == "__main__":

@@ -85,12 +85,13 @@ def main() -> None:
     """Run the command line."""
     import tyro
 
-    from elastica_gym.commands.evaluate import spreads
     from elastica_gym.console.bad_input import check_bounds, choose, environment_ids
+    from elastica_gym.envs import task_of
 
     arguments = tyro.cli(Arguments)
     check_bounds(dataclasses.asdict(arguments), {"imitate": 1, "targets": 1, "seconds": 0.05})
-    choose("spread", arguments.spread, spreads(choose("environment", arguments.env, environment_ids())))
+    env_id = choose("environment", arguments.env, environment_ids())
+    choose("spread", arguments.spread, task_of(env_id).initial_states)
     out = arguments.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
     run(ROOT / "scripts" / "draw_activations.py", "--output", out / "activations.png")

@@ -7,7 +7,6 @@ import platform
 
 from ..console.bad_input import missing_extra
 from . import parse
-from .replay import has_display
 
 EXTRAS = {"train": "training with Stable-Baselines3", "viz": "recordings, films and pictures"}
 
@@ -34,6 +33,7 @@ def findings() -> dict[str, str]:
     from ..engine.jit.cache import CACHE_VARIABLE, cache_folder
     from ..engine.threads import available_cpus
     from ..rl import machine
+    from ..viz.viewer import has_display
 
     folder = cache_folder()
     kernels = [path for path in folder.glob("*") if path.is_file()]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from ..console.bad_input import (
     BadInputError,
-    choose,
     choose_environment,
     make_folder,
     require_extra,
@@ -75,8 +74,6 @@ def main() -> None:
             make_folder(folder)
     with Bar(f"evaluating {arguments.episodes} episodes") as bar:
         policy, env_id, env_kwargs = _source(arguments)
-        if arguments.spread is not None:
-            env_kwargs = {**env_kwargs, "spread": choose("spread", arguments.spread, spreads(env_id))}
         result = evaluate(
             policy,
             env_id,
@@ -136,15 +133,10 @@ def _source(arguments: EvaluateArguments) -> "Source":
     from ..rl import policy_sources
 
     if arguments.policy is not None:
-        return policy_sources.from_name(arguments.policy, arguments.env)
-    if arguments.pretrained is not None:
-        return policy_sources.from_pretrained(arguments.pretrained, arguments.env)
-    assert arguments.run is not None
-    return policy_sources.from_run(arguments.run, arguments.env)
-
-
-def spreads(env_id: str) -> tuple[str, ...]:
-    """Return the distributions of initial states of an environment."""
-    from ..envs import task_of
-
-    return tuple(task_of(env_id).initial_states)
+        source = policy_sources.from_name(arguments.policy, arguments.env)
+    elif arguments.pretrained is not None:
+        source = policy_sources.from_pretrained(arguments.pretrained, arguments.env)
+    else:
+        assert arguments.run is not None
+        source = policy_sources.from_run(arguments.run, arguments.env)
+    return policy_sources.with_spread(source, arguments.spread)

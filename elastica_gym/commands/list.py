@@ -15,7 +15,7 @@ def main() -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from ..envs import registered_ids, task_of
+    from ..envs import observation_names, registered_ids, task_of
     from ..rl import cards
     from ..rl.policies import BASELINES
 
@@ -25,9 +25,8 @@ def main() -> None:
     table.columns[0].no_wrap = True
     for env_id in registered_ids():
         task = task_of(env_id)
-        body = task.make_body()
         summary = " ".join(task.description.strip().partition("\n\n")[0].split()).partition(": ")[2]
-        table.add_row(env_id, str(len(task.layout(body).names)), str(body.n_activations), summary)
+        table.add_row(env_id, str(len(observation_names(env_id))), str(task.make_body().n_activations), summary)
     console.print(table)
     table = Table("shipped policy", "trained on", "success", "return", "distance [m]")
     for name in cards.names():

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import tyro
 
-from ..console.bad_input import BadInputError, choose, choose_environment, require_extra
+from ..console.bad_input import BadInputError, choose_environment, require_extra
 from ..rl.seeds import TEST
+from ..viz.viewer import has_display
 from . import parse
-from .replay import has_display, open_window, serve
+from .replay import open_window, serve
 
 FILMS = (".mp4", ".gif")
 
@@ -61,12 +62,10 @@ def play(arguments: PlayArguments) -> None:
     require_extra("viz")
     if arguments.env is not None:
         choose_environment(arguments.env)
-    from ..envs import task_of
     from ..rl import films, policy_sources
 
-    policy, env_id, env_kwargs = policy_sources.find(arguments.policy, arguments.env)
-    if arguments.spread is not None:
-        env_kwargs = {**env_kwargs, "spread": choose("spread", arguments.spread, tuple(task_of(env_id).initial_states))}
+    source = policy_sources.find(arguments.policy, arguments.env)
+    policy, env_id, env_kwargs = policy_sources.with_spread(source, arguments.spread)
     if isinstance(where, Path) and where.suffix in FILMS:
         films.film(policy, env_id, where, seed=arguments.seed, env_kwargs=env_kwargs)
     elif isinstance(where, Path):

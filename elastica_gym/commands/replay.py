@@ -1,18 +1,16 @@
 """Open a recording of an episode in the rerun viewer."""
 
 import dataclasses
-import os
 import signal
 import socket
 import subprocess
-import sys
 import threading
 from pathlib import Path
 
 import tyro
 
 from ..console.bad_input import BadInputError, require_extra
-from ..viz.viewer import ENVIRONMENT, LOOPBACK, page_url, viewer_program
+from ..viz.viewer import LOOPBACK, environment, has_display, page_url, stop, viewer_program
 from . import invocation, parse
 
 MAGIC = b"RRF"
@@ -59,7 +57,7 @@ def check_recording(path: Path) -> None:
         raise BadInputError(f"{path} is not a rerun recording")
     # in a subprocess, since some damaged files make the reader abort
     command = [*viewer_program(), "rrd", "verify", str(path)]
-    verdict = subprocess.run(command, env={**ENVIRONMENT, **os.environ}, capture_output=True, text=True)
+    verdict = subprocess.run(command, env=environment(), capture_output=True, text=True)
     if verdict.returncode != 0:
         reasons = [line for line in verdict.stderr.splitlines() if line.strip()] or ["rerun cannot read it"]
         raise BadInputError(f"{path} is damaged or cut short: {reasons[0]}")
@@ -84,13 +82,6 @@ def serve(path: Path, *, page: int, data: int) -> int:
     return run_viewer([str(path), "--serve-web", "--bind", LOOPBACK, *ports])
 
 
-def has_display() -> bool:
-    """Return whether there is a display to open a window on."""
-    if not sys.platform.startswith("linux"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-
-
 def require_free(name: str, port: int) -> None:
     """Raise a BadInputError if a port is not available."""
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
@@ -110,18 +101,11 @@ def run_viewer(arguments: list[str]) -> int:
     for name in {"SIGINT", "SIGTERM", "SIGHUP"} & set(dir(signal)):
         signal.signal(getattr(signal, name), lambda *_: interrupted.set())
     # a new session: Ctrl-C reaches only this script, which then stops the viewer
-    viewer = subprocess.Popen(
-        [*viewer_program(), *arguments], env={**ENVIRONMENT, **os.environ}, start_new_session=True
-    )
+    viewer = subprocess.Popen([*viewer_program(), *arguments], env=environment(), start_new_session=True)
     while viewer.poll() is None and not interrupted.wait(timeout=0.2):
         pass
     if not interrupted.is_set():
         return viewer.returncode
-    viewer.terminate()
-    try:
-        viewer.wait(timeout=5)
-    except subprocess.TimeoutExpired:
-        viewer.kill()
-        viewer.wait()
+    stop(viewer)
     print("\nstopped", flush=True)
     return 0

@@ -18,7 +18,6 @@ from ..console.bad_input import (
 from ..rl.run_files import BEST
 from ..rl.seeds import RUNS, VALIDATION, check_seeds
 from . import invocation, parse
-from .replay import has_display
 
 if TYPE_CHECKING:
     from ..viz.viewer import LiveView
@@ -91,6 +90,8 @@ def main() -> None:
         "--env elastica_gym/OctopusGrab-v1 --imitate 128000 --steps 0",
         "--resume runs/SnakeForward-v1/RUN",
     )
+    if arguments.tensorboard and importlib.util.find_spec("tensorboard") is None:
+        raise BadInputError("tensorboard is not installed: pip install tensorboard")
     from ..progress import Bar
 
     with Bar("starting"):
@@ -101,18 +102,15 @@ def main() -> None:
         from ..files import write_atomically
         from ..rl.training import Training
 
-        live = _live_view(arguments, folder)
-        training = Training(
-            folder, config, resume=arguments.resume is not None, live=live, tensorboard=arguments.tensorboard
-        )
+        training = Training(folder, config, resume=arguments.resume is not None, tensorboard=arguments.tensorboard)
     # written after setup, so that refused arguments leave the folder free
     text = yaml.safe_dump(config, sort_keys=False)
     write_atomically(folder / "config.yml", lambda path: path.write_text(text))
     print(f"Training {config['algo']} on {config['env']}, seed {config['seed']}, into {folder}")
-    if live is not None:
-        print(f"Watch it: {live.address}")
+    live = None
     try:
-        finished = training.run()
+        live = _live_view(arguments, folder)
+        finished = training.run(live)
     except (OSError, KeyboardInterrupt) as error:
         what = (
             "interrupted" if isinstance(error, KeyboardInterrupt) else f"{error.strerror}: {error.filename or folder}"
@@ -134,19 +132,19 @@ def main() -> None:
 
 def _live_view(arguments: TrainArguments, folder: Path) -> "LiveView | None":
     """Open the viewer that was asked for; without one, training goes on unwatched."""
-    if arguments.tensorboard and importlib.util.find_spec("tensorboard") is None:
-        raise BadInputError("tensorboard is not installed: pip install tensorboard")
     if not (arguments.rerun or arguments.rerun_web):
         return None
     if message := missing_extra("viz"):
         print(f"No viewer: {message}")
         return None
+    from ..viz.viewer import LiveView, has_display
+
     if arguments.rerun and not has_display():
         print("No viewer: there is no display to open a window on; --rerun-web shows the same in a browser.")
         return None
-    from ..viz.viewer import LiveView
-
-    return LiveView(f"{folder.parent.name}/{folder.name}", web=arguments.rerun_web)
+    live = LiveView(f"{folder.parent.name}/{folder.name}", web=arguments.rerun_web)
+    print(f"Watch it: {live.address}")
+    return live
 
 
 def _resume_command(folder: Path) -> str:

@@ -3,7 +3,7 @@
 from .batch import BatchEnv
 from .documentation import document
 from .goal import GoalTask, goal_conditioned
-from .registration import GOAL_IDS, IDS, register, register_all, registered_ids, task_of
+from .registration import GOAL_IDS, IDS, observation_names, register, register_all, registered_ids, task_of
 from .single import SingleEnv
 from .task import Situation, Task, TerminationReason
 
@@ -18,6 +18,7 @@ __all__ = [
     "TerminationReason",
     "document",
     "goal_conditioned",
+    "observation_names",
     "register",
     "register_all",
     "registered_ids",

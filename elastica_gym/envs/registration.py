@@ -94,6 +94,12 @@ def task_of(env_id: str) -> Task:
     return _registered(spec.kwargs["task"])
 
 
+def observation_names(env_id: str) -> tuple[str, ...]:
+    """Return the names of the numbers of an environment's observation, without making one."""
+    task = task_of(env_id)
+    return task.layout(task.make_body()).names
+
+
 def make_single(*, task: str, render_mode: str | None = None, **kwargs: Any) -> gymnasium.Env:
     """Make the single environment of a registered task, as called by ``gymnasium.make``."""
     if render_mode == "human":

@@ -49,6 +49,11 @@ def read_card(name: str, folder: Path = PRETRAINED) -> dict[str, Any]:
     return yaml.safe_load((folder / f"{choose('pretrained policy', name, names(folder))}.yml").read_text())
 
 
+def cards_of(env_id: str) -> list[dict[str, Any]]:
+    """Return the cards of the policies that ship for an environment."""
+    return [card for card in map(read_card, names()) if card["environment"] == env_id]
+
+
 def read_statistics(path: Path) -> Statistics | None:
     """Read the normalisation of observations, or return None if there is none."""
     if not path.exists():

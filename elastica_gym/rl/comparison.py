@@ -12,10 +12,10 @@ from matplotlib.ticker import EngFormatter
 
 from ..console.bad_input import BadInputError, choose
 from ..engine.model import Array
+from .curves import PANELS
 from .policies import read_config
 from .run_files import EVALUATIONS, read_table
 
-PANELS = {"return": "return", "distance": "distance [m]", "success": "success rate"}
 POINTS = 60
 """Points of each mean curve"""
 NOT_SETTINGS = {

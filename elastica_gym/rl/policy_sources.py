@@ -19,6 +19,14 @@ class Source(NamedTuple):
     """Arguments that the policy was trained with"""
 
 
+def with_spread(source: Source, spread: str | None) -> Source:
+    """Return a source whose initial states are drawn in another of the task's ways, or as it is for None."""
+    if spread is None:
+        return source
+    choose("spread", spread, task_of(source.env_id).initial_states)
+    return source._replace(env_kwargs={**source.env_kwargs, "spread": spread})
+
+
 def find(name: str, env_id: str | None) -> Source:
     """Return the policy called ``name``: a run's folder, a pretrained policy, or what `from_name` takes.
 

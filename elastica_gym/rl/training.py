@@ -23,7 +23,7 @@ from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
 
 from ..console.bad_input import BadInputError
-from ..envs import task_of
+from ..envs import observation_names
 from ..files import write_atomically
 from ..progress import Bar
 from . import cards, curves, transfer
@@ -55,8 +55,6 @@ class Training:
         The run's existing folder.
     config
         Contents of ``config.yml``.
-    live
-        A viewer that shows evaluations while training goes on, or None.
     tensorboard
         Whether to write event files for TensorBoard into the run's folder.
     resume
@@ -69,7 +67,6 @@ class Training:
         config: dict[str, Any],
         *,
         resume: bool,
-        live: "LiveView | None" = None,
         tensorboard: bool = False,
     ):
         self.folder = folder
@@ -87,7 +84,6 @@ class Training:
         self.adapter.seed(training_seeds(config["seed"], 0, self.adapter.num_envs))
         outputs: list[KVWriter] = [TensorBoardOutputFormat(str(folder / TENSORBOARD))] if tensorboard else []
         self.model.set_logger(Logger(folder=None, output_formats=outputs))
-        self._live = live
         self.episodes = Episodes(longest=self.adapter.batch.max_episode_steps, window=self.model._stats_window_size)
         if checkpoint is not None:
             saved = self._load_state(checkpoint)
@@ -138,7 +134,7 @@ class Training:
         now = self.adapter.batch.observation_names
         weights = {name: value for name, value in other.policy.state_dict().items() if name != "log_std"}
         try:
-            where = transfer.places(_observation_names(env_id), now)
+            where = transfer.places(observation_names(env_id), now)
             shapes = {name: value.shape for name, value in self.model.policy.state_dict().items()}
             weights = transfer.widened(weights, shapes, where)
             absent, unknown = self.model.policy.load_state_dict(weights, strict=False)
@@ -209,8 +205,15 @@ class Training:
 
     # Running
 
-    def run(self) -> bool:
-        """Train until the budget is spent or a stop is requested, then save. Return whether the budget is spent."""
+    def run(self, live: "LiveView | None" = None) -> bool:
+        """Train until the budget is spent or a stop is requested, then save. Return whether the budget is spent.
+
+        Parameters
+        ----------
+        live
+            A viewer that shows evaluations while training goes on, or None.
+        """
+        self._live = live
         previous = {number: signal.signal(number, self._ask_to_stop) for number in (signal.SIGINT, signal.SIGTERM)}
         try:
             with Bar("training", file=sys.stdout) as self.display:
@@ -449,11 +452,6 @@ def _numbers(group: str, row: dict[str, Any]) -> dict[str, float]:
         for key, value in kept.items()
         if np.isfinite(value)
     }
-
-
-def _observation_names(env_id: str) -> tuple[str, ...]:
-    task = task_of(env_id)
-    return task.layout(task.make_body()).names
 
 
 def _networks(start: str) -> tuple[Any, RunningMeanStd | None, str, str]:

@@ -13,10 +13,10 @@ from .recording import APPLICATION_ID, import_rerun, log_rollout
 from .rollout import Rollout
 
 LOOPBACK = "127.0.0.1"
-ENVIRONMENT = {"RUST_LOG": "warn", "RERUN_APP_ONLY": "true", "NO_COLOR": "1"}
+QUIET = {"RUST_LOG": "warn", "RERUN_APP_ONLY": "true", "NO_COLOR": "1"}
 """Variables that keep the viewer quiet"""
 PATIENCE = 5.0
-"""Time that the viewer has to take what is left when a view is closed [s]"""
+"""Time that the viewer has to take data or to stop [s]"""
 
 
 def viewer_program() -> list[str]:
@@ -32,6 +32,28 @@ def viewer_program() -> list[str]:
         raise ImportError("recordings need rerun: pip install 'elastica-gym[viz]'")
     program = Path(spec.origin).with_name("rerun.exe" if sys.platform == "win32" else "rerun")
     return [str(program)] if program.is_file() else [sys.executable, "-m", "rerun_cli"]
+
+
+def environment() -> dict[str, str]:
+    """Return the environment variables for rerun's program; those that the user has set take precedence."""
+    return {**QUIET, **os.environ}
+
+
+def has_display() -> bool:
+    """Return whether there is a display to open a window on."""
+    if not sys.platform.startswith("linux"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def stop(viewer: subprocess.Popen) -> None:
+    """Stop a viewer, by force if it takes too long."""
+    viewer.terminate()
+    try:
+        viewer.wait(timeout=PATIENCE)
+    except subprocess.TimeoutExpired:
+        viewer.kill()
+        viewer.wait()
 
 
 def data_url(port: int) -> str:
@@ -70,7 +92,7 @@ class LiveView:
         ports += ["--serve-web", "--web-viewer-port", str(page)] if web else []
         self._viewer = subprocess.Popen(
             [*viewer_program(), *ports],
-            env={**ENVIRONMENT, **os.environ},
+            env=environment(),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             start_new_session=True,
@@ -108,9 +130,4 @@ class LiveView:
         if self.is_open:
             self._curves.flush(timeout_sec=PATIENCE)
         self._curves.disconnect()
-        self._viewer.terminate()
-        try:
-            self._viewer.wait(timeout=PATIENCE)
-        except subprocess.TimeoutExpired:
-            self._viewer.kill()
-            self._viewer.wait()
+        stop(self._viewer)

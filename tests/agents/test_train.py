@@ -11,12 +11,12 @@ from stable_baselines3.common.running_mean_std import RunningMeanStd
 from stable_baselines3.common.vec_env import VecNormalize
 
 from elastica_gym.commands.train import TrainArguments, _started
+from elastica_gym.envs import observation_names
 from elastica_gym.rl import hyperparameters, training, transfer
 from elastica_gym.rl.cards import command_of, load_pretrained, read_card
 from elastica_gym.rl.policies import load_run
 from elastica_gym.rl.run_files import METRICS, read_table
 from elastica_gym.rl.seeds import training_seeds
-from elastica_gym.rl.training import _observation_names as observation_names
 from elastica_gym.rl.vec_env import make_batch_vec_env
 from tests.agents.commands import FORWARD, REACH, SMALL, SMALL_EPISODES, SMALL_PPO, run
 

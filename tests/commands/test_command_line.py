@@ -10,15 +10,14 @@ from elastica_gym.commands import COMMANDS
 from elastica_gym.envs import GOAL_IDS, IDS
 from elastica_gym.files import shipped
 from tests.agents.commands import ROOT, environment
+from tests.agents.commands import run as run_module
 
 PROGRAM = "from elastica_gym.commands import main; main()"
 
 
 def run(*arguments, status=0):
-    command = [sys.executable, "-c", PROGRAM, *map(str, arguments)]
-    done = subprocess.run(command, env=environment(), cwd=ROOT, capture_output=True, text=True, timeout=300)
-    assert done.returncode == status, done.stdout + done.stderr
-    return done.stdout + done.stderr
+    """Run ``elastica-gym``, and return what it printed."""
+    return run_module("elastica_gym.commands", *arguments, status=status)
 
 
 def test_help_names_every_command():
