@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .frames import Camera, Image, Stage, figures, following, outline
+from .frames import FAST, Camera, Image, Stage, figures, following, outline
 from .rollout import Batch, Recorder
 
 
@@ -21,7 +21,7 @@ class View:
     def __init__(self, env: Batch) -> None:
         width, height = env.render_size
         self._aspect = width / height
-        self._stage = Stage(width=width, height=height, unit=env.body.sensors.length)
+        self._stage = Stage(width=width, height=height, unit=env.body.sensors.length, quality=FAST)
         self._recorders = [Recorder(env, i, keep=1) for i in range(env.num_envs)]
 
     def draw(self) -> tuple[Image, ...]:
