@@ -20,16 +20,18 @@ LARGEST = 400_000
 """Bytes of an animation"""
 SLOWEST = 8
 """Most control steps from one frame to the next"""
+SHORTEST = 3.0
+"""Shortest animation [s]; shorter episodes are followed by the next"""
 
 
 @dataclasses.dataclass
 class AnimationArguments:
-    """Play one unseen episode of each environment's shipped policy, or else its script, into an animated GIF."""
+    """Play an unseen episode of each environment's shipped policy, or else its script, into an animated GIF."""
 
     env: tuple[str, ...] = (*IDS, *GOAL_IDS)
     """Environment ids."""
     seed: int = TEST.start
-    """Seed of the episodes."""
+    """Seed of the episode; short ones are followed by those of the next seeds."""
     every: int = 3
     """Control steps from one frame to the next; more where the file would be larger than 400 KB."""
     size: tuple[int, int] = (360, 220)
@@ -68,7 +70,7 @@ def draw(env_id: str, arguments: AnimationArguments) -> bytes:
         path = Path(folder) / "animation.gif"
         check_film(path, arguments.size)
         for every in range(arguments.every, SLOWEST + 1):
-            film(policy, env_id, path, seed=arguments.seed, every=every, size=arguments.size)
+            film(policy, env_id, path, seed=arguments.seed, every=every, size=arguments.size, shortest=SHORTEST)
             if path.stat().st_size <= LARGEST:
                 return path.read_bytes()
     raise BadInputError(f"size must be smaller for {env_id}: {arguments.size} takes more than {LARGEST} bytes")

@@ -30,8 +30,8 @@ class EvaluateArguments:
     pretrained: str | None = None
     """Instead of a run: the name of a policy in agents/pretrained."""
     policy: str | None = None
-    """Instead of a run: zero, random, scripted, seed_gait, a gait.yml of agents.search, or a Python file with a
-    function policy(observation), as for scripts/score.py."""
+    """Any policy: a baseline (zero, random, scripted, seed_gait), the folder of a run, a shipped policy, a gait.yml of
+    agents.search, or a Python file with a function policy(observation), as for scripts/score.py."""
     env: str | None = None
     """Environment id, optionally with the module that registers it, as in my_module:my_lab/SnakeTurn-v0; by default the
     one that the policy was trained or searched on."""
@@ -123,7 +123,7 @@ def _without_nan(value: Any) -> Any:
 
 def _source(arguments: EvaluateArguments) -> "Source":
     if sum(given is not None for given in (arguments.run, arguments.pretrained, arguments.policy)) != 1:
-        raise BadInputError("Give either --run DIR, --pretrained NAME or --policy zero|random|scripted|seed_gait|FILE.")
+        raise BadInputError("Give either --run DIR, --pretrained NAME or --policy NAME.")
     if arguments.env is not None:
         from ..rl.policies import BASELINES
 
@@ -133,7 +133,7 @@ def _source(arguments: EvaluateArguments) -> "Source":
     from ..rl import policy_sources
 
     if arguments.policy is not None:
-        source = policy_sources.from_name(arguments.policy, arguments.env)
+        source = policy_sources.find(arguments.policy, arguments.env)
     elif arguments.pretrained is not None:
         source = policy_sources.from_pretrained(arguments.pretrained, arguments.env)
     else:

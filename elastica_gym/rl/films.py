@@ -50,9 +50,10 @@ def film(
     seed: int,
     every: int = 1,
     size: tuple[int, int] = SIZE,
+    shortest: float = 0.0,
     env_kwargs: dict[str, Any] | None = None,
 ) -> Path:
-    """Run an episode, render it to a file, and print the path.
+    """Run an episode, or more in a row, render them to a file, and print the path.
 
     Parameters
     ----------
@@ -68,6 +69,8 @@ def film(
         Control steps between frames; the film plays in real time.
     size
         Width and height [pixels], even numbers.
+    shortest
+        Duration up to which episodes of the next seeds follow [s].
     env_kwargs
         Arguments of the environment.
     """
@@ -75,18 +78,25 @@ def film(
     from ..viz import render_frames, write_video
 
     check_film(path, size)
-    policy.reset([seed])
-    rollout = run_shown(policy, env_id, seed=seed, env_kwargs=env_kwargs or {})
-    moments = range(0, len(rollout.step), every)
-    with Bar(f"drawing {len(moments)} frames") as bar:
-        follows = np.ptp(rollout.head, axis=0).max() > FAR * rollout.body_length
-        frames = render_frames(rollout, moments, follows=follows, width=size[0], height=size[1], show=bar.show)
-    seconds = every * float(np.diff(rollout.sim_time).mean())
+    frames: list[np.ndarray] = []
+    played, next_seed = 0.0, seed
+    while not frames or played < shortest:
+        policy.reset([next_seed])
+        rollout = run_shown(policy, env_id, seed=next_seed, env_kwargs=env_kwargs or {})
+        moments = range(0, len(rollout.step), every)
+        with Bar(f"drawing {len(moments)} frames") as bar:
+            follows = np.ptp(rollout.head, axis=0).max() > FAR * rollout.body_length
+            frames.extend(
+                render_frames(rollout, moments, follows=follows, width=size[0], height=size[1], show=bar.show)
+            )
+        seconds = every * float(np.diff(rollout.sim_time).mean())
+        played, next_seed = played + rollout.duration, next_seed + 1
     if path.suffix == ".gif":
-        _write_gif(frames, path, seconds)
+        _write_gif(np.stack(frames), path, seconds)
     else:
-        write_video(frames, path, fps=1.0 / seconds)
-    print(f"filmed {path} ({path.stat().st_size / 1e6:.1f} MB, {rollout.duration:.1f} s, seed {seed})")
+        write_video(np.stack(frames), path, fps=1.0 / seconds)
+    seeds = f"seed {seed}" if next_seed == seed + 1 else f"seeds {seed} to {next_seed - 1}"
+    print(f"filmed {path} ({path.stat().st_size / 1e6:.1f} MB, {played:.1f} s, {seeds})")
     return path
 
 

@@ -28,7 +28,7 @@ def with_spread(source: Source, spread: str | None) -> Source:
 
 
 def find(name: str, env_id: str | None) -> Source:
-    """Return the policy called ``name``: a run's folder, a pretrained policy, or what `from_name` takes.
+    """Return the policy called ``name``: a run's folder, a pretrained policy, a baseline, a gait or a Python file.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def find(name: str, env_id: str | None) -> Source:
         return from_run(Path(name), env_id)
     if name not in BASELINES and Path(name).suffix not in (".yml", ".py"):
         choose("policy", name, [*BASELINES, *cards.names()])
-    return from_name(name, env_id)
+    return _from_name(name, env_id)
 
 
 def from_run(run: Path, env_id: str | None) -> Source:
@@ -59,7 +59,7 @@ def from_pretrained(name: str, env_id: str | None) -> Source:
     return Source(policy, env_id or choose_environment(card["environment"]), card["env_kwargs"])
 
 
-def from_name(name: str, env_id: str | None) -> Source:
+def _from_name(name: str, env_id: str | None) -> Source:
     """Return a baseline, or the policy of a gait file (.yml) or of a Python file (.py)."""
     from ..scripted.families import load_gait
 
