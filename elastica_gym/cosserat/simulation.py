@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from ..engine.builder import at_rest, build_model, lay_out
+from ..engine.jit.compiler import Bound
 from ..engine.kernels.simulate import DENSE, simulate
 from ..engine.model import Array
 from ..engine.rod import Continuum, Rod, as_indices, stable_time_step
-from ..engine.scene import Hooks, Scheme
+from ..engine.scene import Hooks, Scene, Scheme
 from ..engine.stability import Limit, limits
 from .declaration import Declaration
 from .dissipation import AnalyticalLinearDamper
@@ -61,11 +62,12 @@ class Hook:
         self.calls: list[Call] = []
         self.error: BaseException | None = None
         self._function = self._signature(self._run)
+        self._address = int(ctypes.cast(self._function, ctypes.c_void_p).value or 0)
 
     @property
     def address(self) -> int:
         """Address of the C function, 0 if there are no functions."""
-        return int(ctypes.cast(self._function, ctypes.c_void_p).value or 0) if self.calls else 0
+        return self._address if self.calls else 0
 
     def _run(self, time: float) -> int:
         now = np.float64(time)
@@ -130,6 +132,8 @@ class Simulation:
         Data that the compiled step reads and writes.
     """
 
+    _scene: Scene | None = None
+
     def __init__(
         self,
         systems: Sequence[Any],
@@ -148,7 +152,7 @@ class Simulation:
         self.state, self.control = at_rest(self.model, lowered, cylinders=bodies)
         self._material = self._move_rods()
         self._move_bodies()
-        self._as_laid_out = self._material.copy()
+        self._as_laid_out = self._material.tobytes()
         self._hooks = {name: Hook() for name in Hooks._fields}
         self.callbacks = callbacks or Callbacks()
         self._names = names or {}
@@ -219,12 +223,24 @@ class Simulation:
         builder = SceneBuilder(self.model, self.rods, self.bodies)
         for lower in self._lowerings:
             lower(builder)
-        before, self.scene = getattr(self, "scene", None), builder.build()
+        before, scene = self._scene, builder.build()
         if before is not None:
             # keep the dampers of finalize and the neighbour list
-            self.scene = self.scene._replace(rod_contacts=before.rod_contacts, decay=before.decay, drag=before.drag)
+            scene = scene._replace(rod_contacts=before.rod_contacts, decay=before.decay, drag=before.drag)
+        self.scene = scene
         self._loading = DENSE if self._hooks["loads"].calls else builder.loading
         self._as_lowered = self._values()
+
+    @property
+    def scene(self) -> Scene:
+        """Tables of the features."""
+        assert self._scene is not None
+        return self._scene
+
+    @scene.setter
+    def scene(self, scene: Scene) -> None:
+        self._scene = scene
+        self._simulate = Bound(simulate, self.model, scene, self.state, self.control)
 
     def _follow(self, *features: Any) -> None:
         """Register the features' arrays, which the caller may change between calls of compiled code."""
@@ -336,18 +352,8 @@ class Simulation:
             body._time_step = dt
         self._time_step, self.state.time[0] = dt, time
         hooks = Hooks(**{name: hook.address for name, hook in self._hooks.items()})
-        stopped = simulate(
-            self.model,
-            self.scene,
-            self.state,
-            self.control,
-            hooks,
-            scheme,
-            dt,
-            n_steps,
-            DENSE if self._has_loads else self._loading,
-            self._broken,
-        )
+        loading = DENSE if self._loading == DENSE or self._has_loads else self._loading
+        stopped = self._simulate(hooks, scheme, dt, n_steps, loading, self._broken)
         if stopped:
             self.warn_of_divergence()
             self._raise_error()
@@ -355,11 +361,12 @@ class Simulation:
 
     def read_material(self) -> bool:
         """Lay out the rods' material again if it has changed, and return whether it has."""
-        if np.array_equal(self._material, self._as_laid_out):
+        material = self._material.tobytes()
+        if material == self._as_laid_out:
             return False
         for rod, first in zip(self.rods, self.model.first_slot, strict=True):
             lay_out(self.model._asdict(), _laid(rod), int(first))
-        self._as_laid_out[:] = self._material
+        self._as_laid_out = material
         return True
 
     def warn_of_divergence(self) -> None:
