@@ -31,6 +31,7 @@ TARGETS = {50: 35.0, 200: 22.0}
 ARMS_TARGET = 30.0
 """Required speed-up on two arms around an object"""
 OWN_FORCE_LIMIT = 3.0
+STEPPER_RATIO = 2.0
 """Largest time that a user's own empty force may add to a step of the library [us]"""
 LIBRARY_STEPS_OURS, LIBRARY_STEPS_THEIRS = 200, 10
 THREADS_TARGET = 1.7
@@ -78,6 +79,7 @@ def main() -> None:
     with contextlib.redirect_stdout(io.StringIO()):
         results["library"] = [measure_rods(n, arguments.pairs) for n in (4, 36)]
         results["own_force"] = measure_own_force(arguments.pairs)
+        results["stepper"] = measure_stepper(arguments.pairs)
     results["environments"] = [measure_environments(each, arguments.pairs) for each in ONE_OF_EACH]
     results["start"] = measure_start()
     show(results)
@@ -272,6 +274,48 @@ def measure_own_force(n_pairs: int) -> dict[str, float]:
         )
     without, with_force = (1e6 * best / STEPS_OURS for best in best_slices(runs, SLICES * n_pairs))
     return {"without_us": without, "with_us": with_force, "added_us": with_force - without, "limit_us": OWN_FORCE_LIMIT}
+
+
+def measure_stepper(n_pairs: int) -> dict[str, float]:
+    """Time a step of a rod of 50 elements with a user's own force, stepped one step at a time, in both libraries."""
+    import elastica
+    import numpy as np
+
+    import elastica_gym.cosserat as library
+
+    n_steps, dt = 200, 1e-4
+
+    def declared(lib: Any) -> Callable[[], None]:
+        class Push(lib.NoForces):
+            def apply_forces(self, system: Any, time: float = 0.0) -> None:
+                system.external_forces[0, -1] += 1e-4
+
+        class Simulator(lib.BaseSystemCollection, lib.Forcing, lib.Damping):
+            pass
+
+        simulator, stepper = Simulator(), lib.PositionVerlet()
+        x, y = np.eye(3)[:2]
+        material = {"youngs_modulus": 1e6, "shear_modulus": 1e6 / 1.5}
+        rod = lib.CosseratRod.straight_rod(50, np.zeros(3), x, y, 0.35, 0.35 * 0.011, 1000.0, **material)
+        simulator.append(rod)
+        simulator.add_forcing_to(rod).using(lib.GravityForces, acc_gravity=-9.81 * y)
+        simulator.add_forcing_to(rod).using(Push)
+        simulator.dampen(rod).using(lib.AnalyticalLinearDamper, damping_constant=0.1, time_step=dt)
+        simulator.finalize()
+        time = 0.0
+
+        def run() -> None:
+            nonlocal time
+            for _ in range(n_steps):
+                time = stepper.step(simulator, time, dt)
+
+        return run
+
+    ways = [declared(lib) for lib in (elastica, library)]
+    pairs = [best_slices(ways) for _ in range(n_pairs)]
+    theirs, ours = (1e6 * statistics.median(column) / n_steps for column in zip(*pairs, strict=True))
+    ratio = statistics.median(pair[0] / pair[1] for pair in pairs)
+    return {"ours_us": ours, "pyelastica_us": theirs, "ratio": ratio, "target": STEPPER_RATIO}
 
 
 def race(model: Any, state: Any, control: Any, twin: Any, steps_theirs: int, n_pairs: int) -> dict[str, Any]:
@@ -469,6 +513,12 @@ def show(results: dict[str, Any]) -> None:
     console.print(
         f"a user's own empty force adds {own['added_us']:.2f} us to a step of the library "
         f"(at most {own['limit_us']:g})",
+        highlight=False,
+    )
+    stepper = results["stepper"]
+    console.print(
+        f"one step at a time, with a user's own force: {stepper['ours_us']:.1f} us, PyElastica "
+        f"{stepper['pyelastica_us']:.1f} us, {stepper['ratio']:.1f} times (at least {stepper['target']:g})",
         highlight=False,
     )
     console.print(describe_start(results["start"]), highlight=False)
