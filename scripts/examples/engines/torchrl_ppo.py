@@ -31,7 +31,6 @@ def main() -> None:
     a = parser.parse_args()
     torch.manual_seed(a.seed)
     batch = gymnasium.make_vec(a.env, num_envs=a.num_envs, autoreset_mode=AutoresetMode.DISABLED)
-    # the normalised observation has a name of its own: a reset of some environments must not normalise the others twice
     norm = VecNormV2(in_keys=["observation"], out_keys=["scaled"])
     env = TransformedEnv(GymWrapper(batch), Compose(DoubleToFloat(), RewardSum(), RewardScaling(0.0, 10.0), norm))
     env.set_seed(a.seed)
