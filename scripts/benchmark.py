@@ -1,6 +1,7 @@
 """Measure the speed of the physics relative to PyElastica 1.0.0, and that of the environments.
 
-``python scripts/benchmark.py`` prints tables and JSON; ``--start`` only measures the time to the first step.
+``python scripts/benchmark.py`` prints tables and JSON; ``--start`` only measures the time to the first step, and
+``--engines`` only the speed of training by the RL libraries that are installed.
 """
 
 import argparse
@@ -17,6 +18,7 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from importlib.metadata import version
+from importlib.util import find_spec
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -37,6 +39,12 @@ LIBRARY_STEPS_OURS, LIBRARY_STEPS_THEIRS = 200, 10
 THREADS_TARGET = 1.7
 ONE_OF_EACH = ("elastica_gym/SnakeForward-v1", "elastica_gym/OctopusReach-v1")
 """One environment per animal; its other tasks have the same physics"""
+ENGINES = tuple(sorted(path.stem for path in (ROOT / "scripts" / "examples" / "engines").glob("*.py")))
+"""Scripts that train by an RL library, each called ``<module>_<algorithm>``"""
+ENGINE_STEPS = 25_600
+"""Environment steps of training: two episodes of 64 snakes"""
+ADAPTER_LIMIT = 0.03
+"""Largest time that the adapter to Stable-Baselines3 may add to a step of 64 snakes, as a fraction of it"""
 COLD_LIMIT, WARM_LIMIT = 40.0, 3.0
 """Largest time to the first step, with and without compilation [s]"""
 WARM_UP = 2.0
@@ -62,6 +70,7 @@ def main() -> None:
     """Run the requested measurements and print them."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--start", action="store_true", help="only the time to the first step, cold and warm")
+    parser.add_argument("--engines", action="store_true", help="only training by RL libraries")
     parser.add_argument("--pairs", type=int, default=9, help="interleaved pairs of measurements (default: 9)")
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="numbers of elements")
     parser.add_argument("--json", type=Path, help="also write the JSON to this file")
@@ -70,6 +79,9 @@ def main() -> None:
         parser.error("--pairs must be at least 1, and --sizes at least 2")
     if arguments.start:
         print(describe_start(measure_start()))
+        return
+    if arguments.engines:
+        show_engines(measure_engines(arguments.pairs))
         return
     require_extras()
     sys.path.insert(0, str(ROOT))
@@ -434,17 +446,85 @@ def make_batch(env_id: str, num_envs: int, n_threads: int = 1) -> Any:
     return envs.unwrapped
 
 
-def run_batch(envs: Any, n_steps: int) -> None:
-    """Step a batch with random actions."""
+def run_batch(envs: Any, n_steps: int, step: Callable[[Any], object] | None = None) -> None:
+    """Step a batch with random actions, by its own function or the given one."""
     import numpy as np
 
+    step = step or envs.step
     for action in np.random.default_rng(0).uniform(-1.0, 1.0, (n_steps, *envs.action_space.shape)):
-        envs.step(action)
+        step(action)
 
 
 def run_made(n_steps: int) -> None:
     """Step the batch made by `begin`."""
     run_batch(_made[0], n_steps)
+
+
+# RL libraries
+
+
+def measure_engines(n_pairs: int) -> dict[str, Any]:
+    """Time steps of a batch of snakes with random actions and the same through the adapter, and training.
+
+    All step on as many threads as there are CPUs, but for the two processes, which step half the batch each on one.
+    """
+    from elastica_gym.engine.threads import available_cpus
+    from elastica_gym.rl import BatchVecEnv
+
+    env_id, num_envs, n_steps = ONE_OF_EACH[0], 64, 2
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as other:
+        made = other.submit(begin, env_id, num_envs // 2)
+        bare, inner = (make_batch(env_id, num_envs, available_cpus()) for _ in range(2))
+        mine, adapted = make_batch(env_id, num_envs // 2), BatchVecEnv(inner)
+        made.result()
+
+        def run_processes() -> None:
+            theirs = other.submit(run_made, n_steps)
+            run_batch(mine, n_steps)
+            theirs.result()
+
+        ways = [lambda: run_batch(bare, n_steps), lambda: run_batch(inner, n_steps, adapted.step), run_processes]
+        for way in ways:
+            way()
+        times = [best_slices(ways) for _ in range(n_pairs)]
+    alone, through, halves = (statistics.median(column) for column in zip(*times, strict=True))
+    return {
+        "bare": num_envs * n_steps / alone,
+        "adapter": num_envs * n_steps / through,
+        "two processes": num_envs * n_steps / halves,
+        "adapter_ratio": statistics.median(t[1] / t[0] for t in times),
+        "adapter_fraction": measure_adapter(adapted) / (alone / n_steps),
+        **{script: training_speed(script) for script in ENGINES},
+    }
+
+
+def measure_adapter(envs: Any) -> float:
+    """Return the time that the adapter itself takes in a step [s]: with a batch that repeats its last results."""
+    import numpy as np
+
+    actions = np.zeros(envs.batch.action_space.shape, np.float32)
+    results = envs.batch.step(actions)
+    envs.batch.step = lambda _: results
+    n = 500
+    return min(best_slices([lambda: [envs.step(actions) for _ in range(n)]])) / n
+
+
+def training_speed(script: str) -> float | None:
+    """Return environment steps per second between the first and the last report of a script, None if it cannot run."""
+    if find_spec(script.rpartition("_")[0]) is None:
+        return None
+    path = ROOT / "scripts" / "examples" / "engines" / f"{script}.py"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
+    command = [sys.executable, str(path), "--env", ONE_OF_EACH[0], "--steps", str(ENGINE_STEPS)]
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True) as process,
+    ):
+        assert process.stdout is not None
+        lines = (line.split() for line in process.stdout if line.startswith("steps"))
+        reports = [(time.perf_counter(), int(words[1].replace(",", ""))) for words in lines]
+    (start, first), (end, last) = reports[0], reports[-1]
+    return (last - first) / (end - start)
 
 
 # the first step
@@ -474,6 +554,20 @@ def describe_start(start: dict[str, float]) -> str:
 
 
 # output
+
+
+def show_engines(results: dict[str, Any]) -> None:
+    """Print the speeds with and without RL libraries."""
+    print("environment steps per second, 64 snakes")
+    for name in ("bare", "adapter", "two processes", *ENGINES):
+        speed = results[name]
+        print(
+            f"{name:18}", "skipped, not installed" if speed is None else f"{speed:7,.0f}  {speed / results['bare']:.2f}"
+        )
+    print(
+        f"through the adapter, a step takes {results['adapter_ratio']:.3f} times as long as without; its own time is "
+        f"{100 * results['adapter_fraction']:.2f} % of a step (at most {100 * ADAPTER_LIMIT:g})"
+    )
 
 
 def show(results: dict[str, Any]) -> None:

@@ -1,6 +1,7 @@
 """Stable-Baselines3: adapter, training, imitation, policies, evaluation and cards.
 
-`BatchVecEnv` adapts a batch to Stable-Baselines3; `make_batch_vec_env` makes one from an environment id.
+`BatchVecEnv` adapts any Gymnasium vector environment to Stable-Baselines3; `make_batch_vec_env` makes one from an
+environment id of this package.
 """
 
 from typing import Any

@@ -54,7 +54,9 @@ class RunningNorm:
         self.mean, self.variance, self.count = np.zeros(size), np.ones(size), 1e-4
 
     def update(self, x: np.ndarray) -> None:
-        """Take in rows (n, size)."""
+        """Take in rows (n, size), of which there may be none."""
+        if not len(x):
+            return
         mean, variance, n = x.mean(axis=0), x.var(axis=0), len(x)
         delta, total = mean - self.mean, self.count + n
         self.variance = (self.variance * self.count + variance * n + delta**2 * self.count * n / total) / total
