@@ -27,7 +27,7 @@ def run(*command, folder):
 
 
 def test_every_example_is_tested():
-    tested = {"ppo_single_file", "sb3_ppo", "hindsight", "my_policy", "my_task", "my_body", "sweep"}
+    tested = {"ppo_single_file", "sb3_ppo", "hindsight", "my_policy", "my_task", "my_body"}
     assert {path.stem for path in EXAMPLES.glob("*.py")} == tested
 
 
@@ -66,20 +66,6 @@ def test_a_policy_file_crawls(tmp_path):
         "--json", tmp_path / "numbers.json", folder=ROOT)  # fmt: skip
     distance = float(re.search(r'"distance_mean": ([-\d.e]+)', (tmp_path / "numbers.json").read_text())[1])
     assert distance > 0.1
-
-
-def test_a_sweep_is_compared_and_not_repeated(tmp_path):
-    small = ("--n-envs", 2, "--evaluations", 1, "--evaluation-episodes", 2, "--recordings", 0, "--threads", 1)
-    config = tmp_path / "config.yml"
-    config.write_text(
-        "default: {n_envs: 2, n_timesteps: 80, policy: MlpPolicy, n_steps: 20, batch_size: 20, n_epochs: 2}"
-    )
-    sweep = (EXAMPLES / "sweep.py", "--steps", 40, "--seeds", 0, "--gamma", 0.9, 0.95, "--out", "sweep", *small)
-    run(*sweep, "--config", config, folder=tmp_path)
-    before = [path.stat().st_mtime_ns for path in sorted(tmp_path.glob("sweep/*/model.zip"))]
-    assert len(before) == 2 and "gamma=0.95" in (tmp_path / "sweep" / "comparison" / "scores.csv").read_text()
-    run(*sweep, "--config", config, folder=tmp_path)
-    assert [path.stat().st_mtime_ns for path in sorted(tmp_path.glob("sweep/*/model.zip"))] == before
 
 
 @pytest.mark.parametrize("env_id", ["my_task:my_lab/SnakeTurn-v0", "my_body:my_lab/WormForward-v0"])

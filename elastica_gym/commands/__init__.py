@@ -18,6 +18,7 @@ COMMANDS = {
     "demo": "a shipped policy in the browser",
     "play": "one episode of any policy: in a window, a browser, a film or a recording",
     "train": "an agent with PPO or SAC, by imitation, or both",
+    "sweep": "agents over seeds, environments and hyperparameters, on all cores or on a cluster (Ray)",
     "evaluate": "a policy on unseen episodes",
     "compare": "runs: learning curves with intervals over seeds, and final scores",
     "search": "a gait by CMA-ES",
@@ -30,7 +31,7 @@ COMMANDS = {
     "doctor": "versions, compiled kernels, drawing, threads",
 }
 """Name of each command, and what it does with or shows"""
-IN_AGENTS = ("train", "evaluate", "search", "publish", "plot_curves", "record")
+IN_AGENTS = ("train", "sweep", "evaluate", "search", "publish", "plot_curves", "record")
 """Commands that a clone has as modules of ``agents``"""
 
 

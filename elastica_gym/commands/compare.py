@@ -36,11 +36,16 @@ def main() -> None:
     arguments = parse(
         "compare", CompareArguments, "runs/SnakeForward-v1/*", "runs/SnakeForward-v1/* --by gamma learning_rate"
     )
+    compare(arguments.runs, arguments.by, arguments.out)
+
+
+def compare(runs: list[Path], by: list[str], out: Path) -> None:
+    """Compare runs by setting: print their scores and write the files into the folder `out`."""
     from ..files import write_atomically
     from ..rl import comparison, curves
 
-    settings = comparison.settings_of(arguments.runs, arguments.by)
-    make_folder(arguments.out)
+    settings = comparison.settings_of(runs, by)
+    make_folder(out)
     figure = comparison.plot(settings)
     written = {
         "comparison.png": lambda path: curves.save(figure, path),
@@ -59,8 +64,8 @@ def main() -> None:
         written["comparison.rrd"] = lambda path: write_curves(lines, path)
     print_scores(settings)
     for name, write in written.items():
-        write_atomically(arguments.out / name, write)
-        print(f"wrote {arguments.out / name}")
+        write_atomically(out / name, write)
+        print(f"wrote {out / name}")
 
 
 def print_scores(settings: "list[Setting]") -> None:

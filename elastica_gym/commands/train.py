@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..console.bad_input import (
     BadInputError,
     check_bounds,
+    choose,
     choose_environment,
     fail,
     make_folder,
@@ -20,12 +21,17 @@ from ..rl.seeds import RUNS, VALIDATION, check_seeds
 from . import invocation, parse
 
 if TYPE_CHECKING:
+    from ..rl.rllib_engine import RllibTraining
+    from ..rl.training import Training
     from ..viz.viewer import LiveView
+
+
+ENGINES = ("sb3", "rllib")
 
 
 @dataclasses.dataclass
 class TrainArguments:
-    """Train an agent with Stable-Baselines3.
+    """Train an agent with Stable-Baselines3, or with RLlib on several processes.
 
     Hyperparameters come from configs/<algo>.yml. Results are written to runs/<id>/<algo>-<seed>-<time>/.
     """
@@ -34,6 +40,9 @@ class TrainArguments:
     """Environment id, optionally with the module that registers it, as in my_module:my_lab/SnakeTurn-v0."""
     algo: str = "ppo"
     """Algorithm: ppo or sac."""
+    engine: str = "sb3"
+    """Library: sb3, or rllib, whose PPO collects experience in several processes (docs/how_to/ray.md). rllib leaves
+    out target_kl, symmetric policies and the normalisation of rewards."""
     seed: int = 0
     """Seed of networks and exploration, below 2**32; the environments' seeds are derived from it (`rl.seeds`)."""
     steps: int | None = None
@@ -64,6 +73,11 @@ class TrainArguments:
     """Evaluation episodes recorded for rerun at the end."""
     checkpoint_minutes: float = 1.0
     """Time between checkpoints; 0 writes one after every update."""
+    env_runners: int = 1
+    """Processes that collect experience with --engine rllib, one core each, besides the learner's."""
+    address: str | None = None
+    """Ray cluster for --engine rllib, as host:port of its head node, or auto on one of its nodes; by default the cores
+    of this machine."""
     rerun: bool = False
     """Show evaluations, curves and reward terms in rerun's window while training continues."""
     rerun_web: bool = False
@@ -88,6 +102,7 @@ def main() -> None:
         "--env elastica_gym/SnakeForward-v1 --minutes 5",
         "--env elastica_gym/SnakeReach-v1 --start-from snake_forward_ppo --steps 700000",
         "--env elastica_gym/OctopusGrab-v1 --imitate 128000 --steps 0",
+        "--engine rllib --env-runners 4 --steps 700000",
         "--resume runs/SnakeForward-v1/RUN",
     )
     if arguments.tensorboard and importlib.util.find_spec("tensorboard") is None:
@@ -100,9 +115,8 @@ def main() -> None:
         import yaml
 
         from ..files import write_atomically
-        from ..rl.training import Training
 
-        training = Training(folder, config, resume=arguments.resume is not None, tensorboard=arguments.tensorboard)
+        training = _training(arguments, folder, config)
     # written after setup, so that refused arguments leave the folder free
     text = yaml.safe_dump(config, sort_keys=False)
     write_atomically(folder / "config.yml", lambda path: path.write_text(text))
@@ -130,6 +144,18 @@ def main() -> None:
     print(f"Evaluate it with: {invocation('evaluate')} --run {folder}")
 
 
+def _training(arguments: TrainArguments, folder: Path, config: dict[str, Any]) -> "Training | RllibTraining":
+    resume = arguments.resume is not None
+    # runs of earlier versions have no engine
+    if config.get("engine", "sb3") == "rllib":
+        from ..rl.rllib_engine import RllibTraining
+
+        return RllibTraining(folder, config, resume=resume, address=arguments.address)
+    from ..rl.training import Training
+
+    return Training(folder, config, resume=resume, tensorboard=arguments.tensorboard)
+
+
 def _live_view(arguments: TrainArguments, folder: Path) -> "LiveView | None":
     """Open the viewer that was asked for; without one, training goes on unwatched."""
     if not (arguments.rerun or arguments.rerun_web):
@@ -153,10 +179,19 @@ def _resume_command(folder: Path) -> str:
 
 def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
     """Check the arguments of a new run, create its folder, and return it with the contents of its config.yml."""
+    config = config_of(arguments)
+    folder = arguments.folder or _new_folder(arguments)
+    if (folder / "config.yml").exists():
+        raise BadInputError(f"The folder {folder} already has a run: use another, or {_resume_command(folder)}")
+    return make_folder(folder), config
+
+
+def config_of(arguments: TrainArguments, *, overrides: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Check the arguments of a new run, and return the contents of its config.yml; `overrides` are as in `set`."""
     from ..rl import hyperparameters, machine
 
     choose_environment(arguments.env)
-    overrides = hyperparameters.parse_overrides(arguments.set)
+    overrides = {**hyperparameters.parse_overrides(arguments.set), **(overrides or {})}
     if arguments.n_envs is not None:
         overrides["n_envs"] = arguments.n_envs
     values = hyperparameters.load(arguments.algo, arguments.env, config=arguments.config, overrides=overrides)
@@ -169,10 +204,27 @@ def _started(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
         **machine.describe(),
     }
     _check(config)
-    folder = arguments.folder or _new_folder(arguments)
-    if (folder / "config.yml").exists():
-        raise BadInputError(f"The folder {folder} already has a run: use another, or {_resume_command(folder)}")
-    return make_folder(folder), config
+    if arguments.engine == "rllib":
+        from ..rl import rllib_engine
+
+        _check_rllib(arguments, config)
+        config["hyperparameters"] = rllib_engine.own_hyperparameters(values)
+    return config
+
+
+def _check_rllib(arguments: TrainArguments, config: dict[str, Any]) -> None:
+    """Raise ``BadInputError`` for what RLlib does not do, and print the hyperparameters that it does not follow."""
+    from ..rl.cluster import require_ray
+    from ..rl.rllib_engine import layers, left_out
+
+    if config["algo"] != "ppo":
+        raise BadInputError(f"--engine rllib trains with ppo only, got --algo {config['algo']}")
+    for name in ("imitate", "start_from", "minutes", "rerun", "rerun_web", "tensorboard"):
+        if value := getattr(arguments, name):
+            raise BadInputError(f"--engine rllib does not support --{name.replace('_', '-')}, got {value}")
+    layers(config["hyperparameters"])
+    require_ray("ray", "ray.rllib")
+    print(f"RLlib leaves out {', '.join(left_out(config['hyperparameters'])) or 'nothing'}.")
 
 
 def _start(start: str | None) -> str | None:
@@ -189,7 +241,7 @@ def _start(start: str | None) -> str | None:
     return str(Path(start).resolve())
 
 
-_NOT_IN_CONFIG = {"set", "n_envs", "out", "folder", "resume", "rerun", "rerun_web", "tensorboard"}
+_NOT_IN_CONFIG = {"address", "set", "n_envs", "out", "folder", "resume", "rerun", "rerun_web", "tensorboard"}
 
 
 def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
@@ -209,6 +261,7 @@ def _resumed(arguments: TrainArguments) -> tuple[Path, dict[str, Any]]:
 
 def _check(config: dict[str, Any]) -> None:
     choose_environment(config["env"])
+    choose("engine", config.get("engine", "sb3"), ENGINES)
     lowest = {
         "steps": 0 if config.get("imitate") else 1,
         "minutes": 0.001,
@@ -217,9 +270,12 @@ def _check(config: dict[str, Any]) -> None:
         "evaluations": 0,
         "evaluation_episodes": 1,
         "recordings": 0,
+        "env_runners": 1,
         "checkpoint_minutes": 0.0,
     }
     check_bounds(config, lowest)
+    if config.get("engine") == "rllib" and config["steps"] is None:
+        raise BadInputError("--engine rllib needs --steps, and does not support --minutes")
     if config.get("imitate") and config["algo"] != "ppo":
         raise BadInputError(f"imitate must be 0 for {config['algo']}, got {config['imitate']}: only ppo can imitate")
     check_seeds("seed", config["seed"], 1, RUNS)

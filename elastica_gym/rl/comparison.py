@@ -20,7 +20,7 @@ POINTS = 60
 """Points of each mean curve"""
 NOT_SETTINGS = {
     *("seed", "threads", "minutes", "recordings", "checkpoint_minutes", "config", "cpu", "kernels", "commit"),
-    *("evaluations", "evaluation_episodes", "evaluation_seed", "n_timesteps"),
+    *("evaluations", "evaluation_episodes", "evaluation_seed", "n_timesteps", "env_runners"),
 }
 """Keys of a run's configuration that are not compared unless they are asked for"""
 
@@ -81,7 +81,8 @@ def settings_of(runs: Sequence[Path], by: Sequence[str] = ()) -> list[Setting]:
 
 def _values(config: dict[str, Any]) -> dict[str, Any]:
     """Return a configuration with its hyperparameters, and ``env`` without its namespace."""
-    flat = {**config, **config["hyperparameters"], "env": config["env"].rpartition("/")[2]}
+    # runs of earlier versions have no engine
+    flat = {"engine": "sb3", **config, **config["hyperparameters"], "env": config["env"].rpartition("/")[2]}
     return {key: value for key, value in flat.items() if not isinstance(value, dict)}
 
 

@@ -62,6 +62,22 @@ class Evaluation:
             "elsewhere95": self.elsewhere(),
         }
 
+    def row(self, steps: int, seconds: float) -> dict[str, Any]:
+        """Return the row of ``evaluations.csv`` for an evaluation after some environment steps and seconds."""
+        summary = self.summary()
+        return {
+            "steps": steps,
+            "seconds": seconds,
+            "return": summary["return_mean"],
+            "return_ci95": summary["return_ci95"],
+            "distance": summary["distance_mean"],
+            "distance_ci95": summary["distance_ci95"],
+            "success": summary["success_rate"],
+            "length": summary["length_mean"],
+            "divergences": summary["divergences"],
+            **{f"reward_{term}": mean for term, mean in summary["terms"].items()},
+        }
+
     def elsewhere(self) -> dict[str, list[float]]:
         """Return 95 % prediction intervals of the means over the same seeds on another CPU; JSON-serialisable.
 

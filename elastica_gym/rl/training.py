@@ -8,6 +8,7 @@ import pickle
 import random
 import signal
 import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -214,7 +215,9 @@ class Training:
             A viewer that shows evaluations while training goes on, or None.
         """
         self._live = live
-        previous = {number: signal.signal(number, self._ask_to_stop) for number in (signal.SIGINT, signal.SIGTERM)}
+        # Python handles signals in the main thread only
+        numbers = (signal.SIGINT, signal.SIGTERM) if threading.current_thread() is threading.main_thread() else ()
+        previous = {number: signal.signal(number, self._ask_to_stop) for number in numbers}
         try:
             with Bar("training", file=sys.stdout) as self.display:
                 self._compile()
@@ -366,20 +369,9 @@ class Training:
             seed=self.config["evaluation_seed"],
             n_threads=self.config["threads"],
             env_kwargs=self.config["hyperparameters"].get("env_kwargs"),
-        ).summary()
-        row = {
-            "steps": self.model.num_timesteps,
-            "seconds": self.budget.seconds,
-            "return": result["return_mean"],
-            "return_ci95": result["return_ci95"],
-            "distance": result["distance_mean"],
-            "distance_ci95": result["distance_ci95"],
-            "success": result["success_rate"],
-            "length": result["length_mean"],
-            "divergences": result["divergences"],
-            **{f"reward_{term}": mean for term, mean in result["terms"].items()},
-        }
-        if result["return_mean"] > read_table(self.folder / EVALUATIONS).get("return", np.array([-np.inf])).max():
+        )
+        row = result.row(self.model.num_timesteps, self.budget.seconds)
+        if row["return"] > read_table(self.folder / EVALUATIONS).get("return", np.array([-np.inf])).max():
             self._save_best()
         self.evaluations.append(row)
         scores = {"mean_reward": row["return"], "mean_ep_length": row["length"], "success_rate": row["success"]}
