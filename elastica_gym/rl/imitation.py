@@ -110,14 +110,16 @@ def _learn_scale(model: Any, seen: np.ndarray, n_new: int) -> None:
 
 
 @contextmanager
-def critic_alone(policy: Any, first: bool) -> Iterator[None]:
-    """Freeze the actor if `first`, so that the untrained critic does not undo imitation."""
-    actor = [p for name, p in policy.named_parameters() if not name.startswith(CRITIC)] if first else []
+def critic_alone(model: Any) -> Iterator[None]:
+    """Freeze the actor, so that the untrained critic does not undo imitation, and let the critic learn fast."""
+    actor = [p for name, p in model.policy.named_parameters() if not name.startswith(CRITIC)]
+    schedule, model.lr_schedule = model.lr_schedule, lambda _: LEARNING_RATES[0]
     for parameter in actor:
         parameter.requires_grad_(False)
     try:
         yield
     finally:
+        model.lr_schedule = schedule
         for parameter in actor:
             parameter.requires_grad_(True)
 

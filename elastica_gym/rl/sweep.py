@@ -288,9 +288,13 @@ def _train(folder: Path, trial: Trial, config: dict[str, Any]) -> None:
 
 
 def score_of(folder: Path) -> dict[str, float]:
-    """Return the evaluation of a run's best checkpoint: ``score``, its return, and ``score_steps``, ``distance`` and
-    ``success``; empty without evaluations.
-    """  # noqa: D205
+    """Return the evaluation of a run's best checkpoint.
+
+    Returns
+    -------
+    dict of str to float
+        ``score``, its return, NaN without evaluations; and, with evaluations, ``score_steps``, ``distance`` and ``success``.
+    """
     table = read_table(folder / EVALUATIONS)
     if not table:
         return {"score": float("nan")}

@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
@@ -273,7 +274,8 @@ class Training:
         self._evaluate_when_due(self.spent)
         while self.budget.fraction(self.model.num_timesteps, seconds_ahead=duration) < 1.0 and not self._stop:
             started, steps_before = time.monotonic(), self.model.num_timesteps
-            with critic_alone(self.model.policy, steps_before - self._imitated < self._critic_first):
+            is_fitting = steps_before - self._imitated < self._critic_first
+            with critic_alone(self.model) if is_fitting else nullcontext():
                 iterate(self.model, callback, self.budget)
             duration = time.monotonic() - started
             self._measure((self.model.num_timesteps - steps_before) / duration)

@@ -1,10 +1,12 @@
 """A network first imitates the scripted policy, then learns from rewards."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import torch
 
 from elastica_gym.rl.hyperparameters import algorithm_arguments, load
-from elastica_gym.rl.imitation import CRITIC_UPDATES, ROUNDS, _difference, critic_alone
+from elastica_gym.rl.imitation import CRITIC_UPDATES, LEARNING_RATES, ROUNDS, _difference, critic_alone
 from elastica_gym.rl.policies import load_run
 from elastica_gym.rl.run_files import EVALUATIONS, METRICS, read_table
 from elastica_gym.rl.vec_env import make_batch_vec_env
@@ -64,8 +66,9 @@ def test_the_critic_learns_alone_at_first():
     model = PPO(env=env, **algorithm_arguments(load("ppo", FORWARD) | {"n_steps": 20, "batch_size": 20}))
     before = {name: value.clone() for name, value in model.policy.state_dict().items()}
     for first in (True, False):
-        with critic_alone(model.policy, first):
+        with critic_alone(model) if first else nullcontext():
             model.learn(80)
+        assert (model.policy.optimizer.param_groups[0]["lr"] == LEARNING_RATES[0]) == first
         changed = {name for name, value in model.policy.state_dict().items() if not torch.equal(value, before[name])}
         assert {name for name in changed if "value_net" in name}
         assert bool({name for name in changed if "value_net" not in name}) != first
