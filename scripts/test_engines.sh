@@ -16,10 +16,10 @@ for name in "$@"; do
     cp constraints.txt "$folder/$name.txt"
     case $name in
         engines) packages=('.[train,engines]') ;;
-        # 2.58 imports peft, and does not ask for it
-        agilerl) packages=(. agilerl peft) ;;
+        # it imports peft, and does not ask for it; without versions, pip tries all of theirs
+        agilerl) packages=(. agilerl==2.58.0 peft==0.21.2) ;;
         # it asks for a virtualenv that needs an older filelock than ours
-        tianshou) packages=(. 'tianshou>=2') && grep -E '^(torch|numpy|numba|gymnasium)==' constraints.txt > "$folder/$name.txt" ;;
+        tianshou) packages=(. tianshou==2.0.1) && grep -E '^(torch|numpy|numba|gymnasium)==' constraints.txt > "$folder/$name.txt" ;;
         *) echo "usage: bash scripts/test_engines.sh [engines] [agilerl] [tianshou]" >&2 && exit 2 ;;
     esac
     echo "== $name"

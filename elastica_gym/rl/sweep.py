@@ -293,7 +293,7 @@ def score_of(folder: Path) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        ``score``, its return, NaN without evaluations; and, with evaluations, ``score_steps``, ``distance`` and ``success``.
+        ``score``, its return, NaN without evaluations; with some, also ``score_steps``, ``distance`` and ``success``.
     """
     table = read_table(folder / EVALUATIONS)
     if not table:
