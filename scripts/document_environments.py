@@ -1,9 +1,11 @@
 """Write the page of every environment, and their index: ``python scripts/document_environments.py``.
 
-A page has the specification from the declaration of the task, and the results from the cards of shipped policies.
+A page has the specification from the declaration of the task, the results of shipped policies from their cards, and
+those of policies without training from docs/results/baselines.json, which `score_baselines.py` writes.
 """
 
 import argparse
+import json
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ from elastica_gym.rl import cards
 
 DOCS = Path(__file__).parents[1] / "docs"
 README = DOCS.parent / "README.md"
+BASELINES = DOCS / "results" / "baselines.json"
 INDEX = "index"
 BEGIN, END = "<!-- written by scripts/document_environments.py -->\n", "<!-- end -->"
 """What surrounds the table in the README"""
@@ -96,30 +99,38 @@ def _animation(env_id: str) -> str:
 
 
 def _results(env_id: str) -> list[str]:
-    """Return the scores of shipped policies, how they were trained, and the learning curve."""
+    """Return the scores of shipped policies and baselines, how the former were trained, and the learning curve."""
     found = cards.cards_of(env_id)
-    if not found:
-        return ["## Results", f"No policy ships for this environment; it is made for {HINDSIGHT}."]
-    rows = ["| policy | success | return | distance [m] | steps | minutes |", "|" + "---|" * 6]
+    rows = ["| policy | success | return | distance [m] | training steps | minutes |", "|" + "---|" * 6]
     for card in found:
-        score = card["score"]
-        low, high = score["success_interval95"]
-        rows.append(
-            f"| `{card['name']}` | {score['success_rate']:.0%} ({low:.0%} to {high:.0%}) "
-            f"| {score['return_mean']:.1f} ± {score['return_ci95']:.1f} "
-            f"| {score['distance_mean']:.2f} ± {score['distance_ci95']:.2f} "
-            f"| {card['steps']:,} | {card['wall_time_minutes']:.0f} |"
-        )
-    parts = [
-        "## Results",
-        "On 100 unseen episodes, with 95 % intervals over episodes:",
-        "\n".join(rows),
-        "```bash\n" + "\n".join(card["command"] for card in found) + "\n```",
-    ]
+        rows.append(_row(card["name"], card["score"], f"{card['steps']:,}", f"{card['wall_time_minutes']:.0f}"))
+    for name, score in json.loads(BASELINES.read_text()).get(env_id, {"scores": {}})["scores"].items():
+        rows.append(_row(name, score, "", ""))
+    parts = ["## Results"]
+    if len(rows) > 2:
+        parts += ["On 100 unseen episodes, with 95 % intervals over episodes:", "\n".join(rows)]
+    if found:
+        trained = ["# trained and scored by", *(line for card in found for line in (card["command"], _scored(card)))]
+        parts.append("```bash\n" + "\n".join(trained) + "\n```")
+    else:
+        parts.append(f"No policy ships for this environment; it is made for {HINDSIGHT}.")
     name = task_of(env_id).name
     if (DOCS / "images" / f"learning_{name}.png").exists():
         parts.append(f"![Learning curve of {name}](../images/learning_{name}.png)")
     return parts
+
+
+def _scored(card: dict[str, Any]) -> str:
+    return f"elastica-gym evaluate --policy {card['name']} --episodes {card['score']['episodes']}"
+
+
+def _row(name: str, score: dict[str, Any], steps: str, minutes: str) -> str:
+    low, high = score["success_interval95"]
+    return (
+        f"| `{name}` | {score['success_rate']:.0%} ({low:.0%} to {high:.0%}) "
+        f"| {score['return_mean']:.1f} ± {score['return_ci95']:.1f} "
+        f"| {score['distance_mean']:.2f} ± {score['distance_ci95']:.2f} | {steps} | {minutes} |"
+    )
 
 
 if __name__ == "__main__":

@@ -70,7 +70,16 @@ def draw(env_id: str, arguments: AnimationArguments) -> bytes:
         path = Path(folder) / "animation.gif"
         check_film(path, arguments.size)
         for every in range(arguments.every, SLOWEST + 1):
-            film(policy, env_id, path, seed=arguments.seed, every=every, size=arguments.size, shortest=SHORTEST)
+            film(
+                policy,
+                env_id,
+                path,
+                seed=arguments.seed,
+                every=every,
+                size=arguments.size,
+                shortest=SHORTEST,
+                fine=True,
+            )
             if path.stat().st_size <= LARGEST:
                 return path.read_bytes()
     raise BadInputError(f"size must be smaller for {env_id}: {arguments.size} takes more than {LARGEST} bytes")

@@ -44,7 +44,11 @@ def main() -> None:
     make_folder(arguments.out.parent)
     from elastica_gym.files import write_atomically
 
-    rows = rank([{"submission": path.name, **points_of(path, arguments)} for path in found])
+    rows = []
+    for number, path in enumerate(found, start=1):
+        print(f"[{number}/{len(found)}] {path.name}")
+        rows.append({"submission": path.name, **points_of(path, arguments)})
+    rows = rank(rows)
     text = io.StringIO()
     writer = csv.DictWriter(text, fieldnames=list(dict.fromkeys(key for row in rows for key in row)))
     writer.writeheader()
@@ -89,10 +93,10 @@ def points_of(path: Path, arguments: RankArguments) -> dict[str, Any]:
 
 
 def rank(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return rows by descending points, each with its rank; equal points share one."""
-    ordered = sorted(rows, key=lambda row: (-row["points"], row["submission"]))
+    """Return rows by descending points, each with its rank; equal points share one, and failed ones have none."""
+    ordered = sorted(rows, key=lambda row: (bool(row["error"]), -row["points"], row["submission"]))
     points = [row["points"] for row in ordered]
-    return [{"rank": 1 + points.index(row["points"]), **row} for row in ordered]
+    return [{"rank": "" if row["error"] else 1 + points.index(row["points"]), **row} for row in ordered]
 
 
 def print_ranking(rows: list[dict[str, Any]]) -> None:

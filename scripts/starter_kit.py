@@ -3,7 +3,7 @@
 The policy below is complete: ``python scripts/score.py --policy scripts/starter_kit.py`` scores it. Copy the
 file and change it. ``bash scripts/starter_kit.sh`` installs and runs the rest, as the notebook next to it does: it
 draws the effect of activations, records and films the policy, trains networks shipped with the repository for another
-minute, and scores both.
+minute, and scores both, and the shipped networks as well.
 """
 
 import dataclasses
@@ -119,18 +119,10 @@ def main() -> None:
         "--folder",
         trained,
     )
-    for path in (Path(__file__), trained):
-        run(
-            ROOT / "scripts" / "score.py",
-            "--env",
-            arguments.env,
-            "--targets",
-            arguments.targets,
-            "--policy",
-            path,
-            "--json",
-            out / f"{path.stem}.json",
-        )
+    # the last is where training began: a minute of it may help or harm
+    for policy in (Path(__file__), trained, arguments.start_from):
+        score = ROOT / "scripts" / "score.py", "--env", arguments.env, "--targets", arguments.targets
+        run(*score, "--policy", policy, "--json", out / f"{Path(policy).stem}.json")
 
 
 def show(arguments: Arguments, out: Path) -> None:

@@ -16,8 +16,8 @@ for name in "$@"; do
     cp constraints.txt "$folder/$name.txt"
     case $name in
         engines) packages=('.[train,engines]') ;;
-        # it imports peft, and does not ask for it; without versions, pip tries all of theirs
-        agilerl) packages=(. agilerl==2.58.0 peft==0.21.2) ;;
+        # without a version, pip tries all of them
+        agilerl) packages=(. agilerl==2.58.0) ;;
         # it asks for a virtualenv that needs an older filelock than ours
         tianshou) packages=(. tianshou==2.0.1) && grep -E '^(torch|numpy|numba|gymnasium)==' constraints.txt > "$folder/$name.txt" ;;
         *) echo "usage: bash scripts/test_engines.sh [engines] [agilerl] [tianshou]" >&2 && exit 2 ;;
@@ -25,8 +25,10 @@ for name in "$@"; do
     echo "== $name"
     "${PYTHON:-python3}" -m venv "$folder/$name"
     python="$folder/$name/bin/python"
-    "$python" -m pip install --quiet --disable-pip-version-check --constraint "$folder/$name.txt" torch "${packages[@]}" \
-        pytest hypothesis
+    install=("$python" -m pip install --quiet --disable-pip-version-check --constraint "$folder/$name.txt")
+    "${install[@]}" torch "${packages[@]}"
+    # AgileRL imports peft, and does not ask for it
+    "${install[@]}" pytest hypothesis $([ "$name" != agilerl ] || echo peft)
     "$python" -m pip list --disable-pip-version-check |
         grep -iE '^(torch|gymnasium|numpy|sb3.contrib|sbx-rl|skrl|torchrl|agilerl|tianshou) '
     PYTHONPATH=$PWD "$python" -m pytest -p no:cacheprovider -rs tests/test_engines.py || failed+=("$name")

@@ -4,7 +4,9 @@
 """
 
 import importlib
+import importlib.metadata
 import inspect
+import os
 import sys
 from typing import TypeVar
 
@@ -45,6 +47,11 @@ def main() -> None:
     if len(sys.argv) < 2 or sys.argv[1] in ("-h", "--help"):
         print(_help())
         return
+    if sys.argv[1] == "--version":
+        print(f"elastica-gym {importlib.metadata.version('elastica-gym')}")
+        return
+    # as for ``python -m``: tasks and policies of the user's own are modules in the current folder
+    sys.path.insert(0, os.getcwd())
     name = sys.argv[1]
     try:
         choose("command", name, COMMANDS)

@@ -32,10 +32,10 @@ class CompareArguments:
 
 def main() -> None:
     """Run the command line."""
-    require_extra("train")
     arguments = parse(
         "compare", CompareArguments, "runs/SnakeForward-v1/*", "runs/SnakeForward-v1/* --by gamma learning_rate"
     )
+    require_extra("train")
     compare(arguments.runs, arguments.by, arguments.out)
 
 

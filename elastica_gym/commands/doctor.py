@@ -20,11 +20,12 @@ def main() -> None:
     """Run the command line."""
     parse("doctor", DoctorArguments, "")
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
 
     table = Table(show_header=False)
     for name, finding in findings().items():
-        table.add_row(name, finding)
+        table.add_row(name, escape(finding))
     Console().print(table)
 
 

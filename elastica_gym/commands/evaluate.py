@@ -54,8 +54,6 @@ class EvaluateArguments:
 
 def main() -> None:
     """Run the command line."""
-    require_extra("train")
-
     arguments = parse(
         "evaluate",
         EvaluateArguments,
@@ -63,6 +61,7 @@ def main() -> None:
         "--policy scripted --env elastica_gym/OctopusGrab-v1 --video grab.mp4",
         "--run runs/SnakeForward-v1/RUN --json numbers.json",
     )
+    require_extra("train")
     from ..progress import Bar
 
     if arguments.video is not None:

@@ -13,6 +13,8 @@ from . import parse
 from .replay import open_window, serve
 
 FILMS = (".mp4", ".gif")
+SHORTEST = 3.0
+"""Shortest film [s]: episodes that end sooner are followed by those of the next seeds"""
 
 
 @dataclasses.dataclass
@@ -27,7 +29,7 @@ class PlayArguments:
     """window, browser, a film (FILE.mp4 or FILE.gif) or a recording (FILE.rrd); auto is a window where there is a
     display, else the browser."""
     seed: int = TEST.start
-    """Seed of the episode."""
+    """Seed of the episode; in a film, an episode of less than 3 s is followed by those of the next seeds."""
     spread: str | None = None
     """How initial states are drawn, for tasks that know several ways."""
     port: int = 9090
@@ -67,7 +69,7 @@ def play(arguments: PlayArguments) -> None:
     source = policy_sources.find(arguments.policy, arguments.env)
     policy, env_id, env_kwargs = policy_sources.with_spread(source, arguments.spread)
     if isinstance(where, Path) and where.suffix in FILMS:
-        films.film(policy, env_id, where, seed=arguments.seed, env_kwargs=env_kwargs)
+        films.film(policy, env_id, where, seed=arguments.seed, shortest=SHORTEST, env_kwargs=env_kwargs)
     elif isinstance(where, Path):
         films.record(policy, env_id, seed=arguments.seed, path=where, env_kwargs=env_kwargs)
     else:

@@ -21,11 +21,10 @@ class PlotArguments:
 
 def main() -> None:
     """Run the command line."""
-    require_extra("train")
-
     arguments = parse(
         "plot_curves", PlotArguments, "--env elastica_gym/SnakeForward-v1 --runs runs/SnakeForward-v1/ppo-*"
     )
+    require_extra("train")
     choose_environment(arguments.env)
     from ..files import write_atomically
     from ..rl import curves

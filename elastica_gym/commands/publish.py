@@ -46,9 +46,8 @@ class PublishArguments:
 
 def main() -> None:
     """Run the command line."""
-    require_extra("train")
-
     arguments = parse("publish", PublishArguments, "--name snake_forward_ppo --run runs/SnakeForward-v1/RUN")
+    require_extra("train")
     if not re.fullmatch(r"[a-z0-9_]*(snake|octopus)[a-z0-9_]*", arguments.name):
         raise BadInputError(
             f"name must be lower-case letters, digits and _, with snake or octopus in it, got {arguments.name!r}"

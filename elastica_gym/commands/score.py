@@ -5,7 +5,9 @@ import json
 from pathlib import Path
 
 from ..console.bad_input import make_folder, require_extra
+from ..files import shipped
 from ..rl import machine
+from ..rl.cards import names
 from . import parse
 
 
@@ -17,9 +19,9 @@ class ScoreArguments:
     process and receives only observations.
     """
 
-    policy: Path
-    """A Python file with a function policy(observation), the folder of a run, its model.zip, or a pretrained policy's
-    zip."""
+    policy: str
+    """A Python file with a function policy(observation), the folder of a run, its model.zip, or the name or zip of a
+    shipped policy."""
     targets: int = 100
     """Number of targets on the arc, and also of those anywhere."""
     target_seed: int = 2020
@@ -36,21 +38,21 @@ class ScoreArguments:
 
 def main() -> None:
     """Run the command line; a policy that failed ends it with status 1."""
-    require_extra("train")
-
     arguments = parse(
         "score",
         ScoreArguments,
-        "--policy scripts/starter_kit.py --targets 20",
+        "--policy my_policy.py --targets 20",
+        "--policy octopus_fetch_dagger",
         "--policy runs/OctopusFetch-v1/RUN --json score.json",
     )
+    require_extra("train")
     from ..hackathon.judge import judge, print_score
 
     for folder in (arguments.record, arguments.json and arguments.json.parent):
         if folder is not None:
             make_folder(folder)
     result = judge(
-        arguments.policy,
+        _path(arguments.policy),
         arguments.env,
         targets=arguments.targets,
         target_seed=arguments.target_seed,
@@ -63,3 +65,8 @@ def main() -> None:
         print(f"wrote {arguments.json}")
     if result["error"]:
         raise SystemExit(1)
+
+
+def _path(policy: str) -> Path:
+    """Return the path of a policy, which may be the name of a shipped one."""
+    return shipped("pretrained") / f"{policy}.zip" if policy in names() else Path(policy)

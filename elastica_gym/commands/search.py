@@ -70,9 +70,8 @@ DEFAULT_EVALUATIONS = 6000
 
 def main() -> None:
     """Run the command line."""
-    require_extra("train")
-
     arguments = parse("search", SearchArguments, "--env elastica_gym/SnakeForward-v1 --evaluations 3000")
+    require_extra("train")
     folder, config = _started(arguments)
     from ..progress import Bar
 

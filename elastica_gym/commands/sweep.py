@@ -67,7 +67,6 @@ class SweepArguments:
 
 def main() -> None:
     """Run the command line."""
-    require_extra("train")
     arguments = parse(
         "sweep",
         SweepArguments,
@@ -75,6 +74,7 @@ def main() -> None:
         '--search "learning_rate=lin_log(1e-4,1e-3)" "n_epochs=int(4,12)" --trials 20 --steps 100000',
         "--env elastica_gym/SnakeReach-v1 elastica_gym/OctopusReach-v1 --address auto --out /shared/sweep",
     )
+    require_extra("train")
     from ..rl import sweep
     from ..rl.cluster import prepare, require_ray
 

@@ -46,7 +46,8 @@ class TrainArguments:
     seed: int = 0
     """Seed of networks and exploration, below 2**32; the environments' seeds are derived from it (`rl.seeds`)."""
     steps: int | None = None
-    """Environment steps to train for; by default n_timesteps of the configuration, or no limit if minutes are given."""
+    """Environment steps to train for, rounded up to whole updates (of PPO, n_envs times n_steps); by default
+    n_timesteps of the configuration, or no limit if minutes are given."""
     minutes: float | None = None
     """Wall-clock budget of training and its evaluations; schedules follow its remaining fraction."""
     n_envs: int | None = None
@@ -94,8 +95,6 @@ class TrainArguments:
 
 def main() -> None:
     """Run the command line."""
-    require_extra("train")
-
     arguments = parse(
         "train",
         TrainArguments,
@@ -105,6 +104,7 @@ def main() -> None:
         "--engine rllib --env-runners 4 --steps 700000",
         "--resume runs/SnakeForward-v1/RUN",
     )
+    require_extra("train")
     if arguments.tensorboard and importlib.util.find_spec("tensorboard") is None:
         raise BadInputError("tensorboard is not installed: pip install tensorboard")
     from ..progress import Bar
@@ -116,7 +116,12 @@ def main() -> None:
 
         from ..files import write_atomically
 
-        training = _training(arguments, folder, config)
+        try:
+            training = _training(arguments, folder, config)
+        except BadInputError:
+            if not any(folder.iterdir()):
+                folder.rmdir()
+            raise
     # written after setup, so that refused arguments leave the folder free
     text = yaml.safe_dump(config, sort_keys=False)
     write_atomically(folder / "config.yml", lambda path: path.write_text(text))
@@ -138,7 +143,8 @@ def main() -> None:
     if not finished:
         print(f"Saved. Continue with: {_resume_command(folder)}")
         raise SystemExit(130)
-    print(f"Finished. Model, metrics.csv, learning_curve.png and recordings are in {folder}")
+    recorded = " and recordings" if config["recordings"] else ""
+    print(f"Finished. Model, metrics.csv, learning_curve.png{recorded} are in {folder}")
     if (folder / BEST).exists():
         print(f"The model with the best evaluation is in {folder / BEST}")
     print(f"Evaluate it with: {invocation('evaluate')} --run {folder}")

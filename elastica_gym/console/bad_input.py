@@ -17,11 +17,15 @@ class BadInputError(Exception):
     """Invalid input of the user; the message says what is wrong and what is allowed."""
 
 
+NEAR = 0.5
+"""Similarity from which a name is suggested; 1 is equal"""
+
+
 def choose(what: str, name: str, valid: Collection[str]) -> str:
     """Return `name` if it is one of `valid`, otherwise raise ``BadInputError`` listing them, the closest first."""
     if name in valid:
         return name
-    near = difflib.get_close_matches(name, valid, n=max(1, len(valid)), cutoff=0.3)
+    near = difflib.get_close_matches(name, sorted(valid), n=max(1, len(valid)), cutoff=NEAR)
     hint = f"; did you mean {near[0]!r}?" if near else "."
     there = [*near, *sorted(set(valid) - set(near))]
     raise BadInputError(f"Unknown {what} {name!r}{hint} Valid: {', '.join(there)}.")
@@ -52,7 +56,7 @@ def missing_extra(extra: str) -> str | None:
             continue
         if parts(installed) < parts(lowest):
             troubles.append(f"{package} {installed} is older than {lowest}")
-    return f"{', '.join(troubles)}: pip install --upgrade 'elastica-gym[{extra}]'" if troubles else None
+    return f"{', '.join(troubles)}: pip install 'elastica-gym[{extra}]'" if troubles else None
 
 
 def require_extra(extra: str) -> None:

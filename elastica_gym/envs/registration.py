@@ -1,5 +1,6 @@
 """Ids and their tasks, registered with Gymnasium here and by other packages."""
 
+import os
 from typing import Any
 
 import gymnasium
@@ -133,11 +134,16 @@ def _registered(env_id: str) -> Task:
 
 def _require_window() -> None:
     """Make sure that windows can be opened."""
+    from ..viz.viewer import has_display
+
     instead = "render_mode='rgb_array' draws without a window, as does elastica_gym.viz.record_rollout"
     try:
         import pygame
     except ImportError as error:
         raise ImportError(f"render_mode='human' needs pygame (pip install pygame); {instead}") from error
+    # without a display pygame may open an invisible one, whose end breaks MuJoCo's renderer
+    if not has_display() and "SDL_VIDEODRIVER" not in os.environ:
+        raise RuntimeError(f"render_mode='human' finds no display; {instead}")
     try:
         pygame.display.init()
     except pygame.error as error:

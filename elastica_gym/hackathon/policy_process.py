@@ -1,13 +1,13 @@
 """A policy in a separate process that only receives observations and returns actions.
 
 Messages are arrays in NumPy's file format, without pickled objects. A one-dimensional array of n numbers begins n
-episodes and is echoed; observations (n, d) are answered with actions (n, 42).
+episodes and is echoed; observations (n, d) are answered with actions (n, 42), or with the text of an error.
 """
 
 import io
 import multiprocessing
 import signal
-import sys
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from types import TracebackType
@@ -82,11 +82,16 @@ class PolicyProcess:
         return actions
 
     def _ask(self, message: np.ndarray, patience: float, what: str) -> np.ndarray:
-        try:
+        # a process that has ended may have left its error in the pipe
+        with suppress(OSError):
             self._pipe.send_bytes(_to_bytes(message))
+        try:
             if not self._pipe.poll(patience):
                 raise PolicyError(f"the policy took more than {patience:g} s {what}")
-            return _from_bytes(self._pipe.recv_bytes(LONGEST_ANSWER))
+            answer = _from_bytes(self._pipe.recv_bytes(LONGEST_ANSWER))
+            if answer.dtype.kind == "U":
+                raise PolicyError(str(answer))
+            return answer
         except ValueError as error:
             raise PolicyError(f"the policy's process did not return an array: {error}") from None
         except (EOFError, OSError) as error:
@@ -102,19 +107,17 @@ def _serve(pipe: Connection, path: Path) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         policy = _load(path)
-    except BadInputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        raise SystemExit(2) from None
-    while True:
-        try:
+        while True:
             message = _from_bytes(pipe.recv_bytes())
-        except EOFError:
-            return
-        if message.ndim == 1:
-            policy.reset([0] * message.size)
-            pipe.send_bytes(_to_bytes(message))
-        else:
-            pipe.send_bytes(_to_bytes(np.asarray(policy(message, None))))
+            if message.ndim == 1:
+                policy.reset([0] * message.size)
+                pipe.send_bytes(_to_bytes(message))
+            else:
+                pipe.send_bytes(_to_bytes(np.asarray(policy(message, None))))
+    except EOFError:
+        return
+    except BadInputError as error:
+        pipe.send_bytes(_to_bytes(np.array(str(error))))
 
 
 def _load(path: Path) -> Any:

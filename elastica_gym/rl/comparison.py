@@ -52,7 +52,7 @@ def settings_of(runs: Sequence[Path], by: Sequence[str] = ()) -> list[Setting]:
     Parameters
     ----------
     runs : sequence of Path
-        Folders of runs.
+        Folders of runs; others are named and left out.
     by : sequence of str
         Keys of their configurations or hyperparameters to tell settings apart; by default all in which the runs
         differ but for the seed.
@@ -60,8 +60,9 @@ def settings_of(runs: Sequence[Path], by: Sequence[str] = ()) -> list[Setting]:
     Raises
     ------
     BadInputError
-        If a run has no evaluations, or none has a key.
+        If no folder is that of a run with evaluations, or none has a key.
     """
+    runs = _with_evaluations(runs)
     values = [_values(read_config(run)) for run in runs]
     known = list(dict.fromkeys(key for each in values for key in each))
     keys = [choose("setting", key, known) for key in by] or [
@@ -69,14 +70,22 @@ def settings_of(runs: Sequence[Path], by: Sequence[str] = ()) -> list[Setting]:
     ]
     found: dict[str, Setting] = {}
     for run, each in zip(runs, values, strict=True):
-        table = read_table(run / EVALUATIONS)
-        if not table:
-            raise BadInputError(f"The run {run} has no evaluations yet: {EVALUATIONS} in it has no rows.")
         name = " ".join(f"{key}={each.get(key)}" for key in keys) or "all runs"
         setting = found.setdefault(name, Setting(name, [], []))
         setting.runs.append(run)
-        setting.tables.append(table)
+        setting.tables.append(read_table(run / EVALUATIONS))
     return list(found.values())
+
+
+def _with_evaluations(runs: Sequence[Path]) -> list[Path]:
+    """Return the runs that can be compared, and name the folders that are left out."""
+    kept = [run for run in runs if (run / "config.yml").is_file() and read_table(run / EVALUATIONS)]
+    left_out = [str(run) for run in runs if run not in kept]
+    if not kept:
+        raise BadInputError(f"None of {', '.join(left_out)} is the folder of a run with evaluations.")
+    if left_out:
+        print(f"Left out, as no run with evaluations: {', '.join(left_out)}")
+    return kept
 
 
 def _values(config: dict[str, Any]) -> dict[str, Any]:

@@ -214,7 +214,7 @@ def print_table(title: str, result: Evaluation) -> None:
     from rich.table import Table
 
     summary = result.summary()
-    table = Table(title=title, caption=f"Means on another CPU: within {ELSEWHERE:.1f} times the interval.")
+    table = Table(title=title, caption=f"On another CPU, means may differ by {ELSEWHERE:.1f} times these intervals.")
     table.add_column("over the episode")
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")

@@ -51,6 +51,7 @@ def film(
     every: int = 1,
     size: tuple[int, int] = SIZE,
     shortest: float = 0.0,
+    fine: bool = False,
     env_kwargs: dict[str, Any] | None = None,
 ) -> Path:
     """Run an episode, or more in a row, render them to a file, and print the path.
@@ -71,11 +72,13 @@ def film(
         Width and height [pixels], even numbers.
     shortest
         Duration up to which episodes of the next seeds follow [s].
+    fine
+        Whether to draw smooth edges and shadows, which takes six times as long.
     env_kwargs
         Arguments of the environment.
     """
     from ..progress import Bar
-    from ..viz import render_frames, write_video
+    from ..viz import FAST, FINE, render_frames, write_video
 
     check_film(path, size)
     frames: list[np.ndarray] = []
@@ -87,7 +90,15 @@ def film(
         with Bar(f"drawing {len(moments)} frames") as bar:
             follows = np.ptp(rollout.head, axis=0).max() > FAR * rollout.body_length
             frames.extend(
-                render_frames(rollout, moments, follows=follows, width=size[0], height=size[1], show=bar.show)
+                render_frames(
+                    rollout,
+                    moments,
+                    follows=follows,
+                    width=size[0],
+                    height=size[1],
+                    quality=FINE if fine else FAST,
+                    show=bar.show,
+                )
             )
         seconds = every * float(np.diff(rollout.sim_time).mean())
         played, next_seed = played + rollout.duration, next_seed + 1

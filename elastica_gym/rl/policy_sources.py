@@ -67,7 +67,7 @@ def _from_name(name: str, env_id: str | None) -> Source:
         gait, searched_on = load_gait(Path(name))
         return Source(gait, env_id or choose_environment(searched_on), {})
     if env_id is None:
-        raise BadInputError(f"--policy needs --env, one of {', '.join(environment_ids())}.")
+        raise BadInputError(f"{name} needs --env, one of {', '.join(environment_ids())}.")
     if Path(name).suffix == ".py":
         return Source(_of_file(Path(name)), env_id, {})
     if name == "seed_gait" and task_of(env_id).make_body().name != "snake":

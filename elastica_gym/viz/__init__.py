@@ -4,15 +4,18 @@
 ``pip install 'elastica-gym[viz]'``.
 """
 
-from .frames import Camera, Figure, Stage, framing, render_frames, write_video
+from .frames import FAST, FINE, Camera, Figure, Quality, Stage, framing, render_frames, write_video
 from .recording import read_positions, record_rollout, write_recording
 from .rollout import Policy, Recorder, Rollout, run_rollout
 from .view import View
 
 __all__ = [
+    "FAST",
+    "FINE",
     "Camera",
     "Figure",
     "Policy",
+    "Quality",
     "Recorder",
     "Rollout",
     "Stage",

@@ -44,9 +44,9 @@ class Quality(NamedTuple):
 
 
 FINE = Quality(supersampling=2, shadow_size=4096, slices=28)
-"""For films and figures"""
+"""For figures and animations"""
 FAST = Quality(supersampling=1, shadow_size=1024, slices=12)
-"""For pictures of every step; a sixth of the time"""
+"""For films, and pictures of every step; a sixth of the time"""
 
 FIELD_OF_VIEW = 32.0
 """Vertical field of view [deg]"""
@@ -346,6 +346,7 @@ def render_frames(
     follows: bool = False,
     width: int = 960,
     height: int = 540,
+    quality: Quality = FINE,
     show: Callable[[float], object] | None = None,
 ) -> Image:
     """Draw moments of a rollout: the animal on the ground, objects and target, a frame for each moment.
@@ -363,6 +364,7 @@ def render_frames(
         Whether the camera moves with the animal instead.
     width, height : int
         Size of the frames [pixels].
+    quality : Quality
     show : callable, optional
         Called after each frame with the fraction of frames drawn.
 
@@ -377,7 +379,7 @@ def render_frames(
     if camera is None and not follows:
         camera = framing(outline(rollout, picked), width / height)
     frames = np.empty((len(picked), height, width, 3), dtype=np.uint8)
-    with Stage(width=width, height=height, unit=rollout.body_length) as stage:
+    with Stage(width=width, height=height, unit=rollout.body_length, quality=quality) as stage:
         for number, (frame, moment) in enumerate(zip(frames, picked, strict=True), start=1):
             shown = figures(rollout, moment)
             here = camera or following(rollout, moment, width / height)

@@ -183,7 +183,7 @@ runpy.run_path(sys.argv[0], run_name="__main__")
         "agents/train.py",
         "agents/evaluate.py",
         "agents/search.py",
-        "scripts/score.py",
+        "scripts/score.py --policy x",
         "scripts/make_table.py",
         "scripts/count_divergence.py",
         "scripts/search_carrying.py",
@@ -192,18 +192,25 @@ runpy.run_path(sys.argv[0], run_name="__main__")
     ],
 )
 def test_missing_packages(program):
-    command = [sys.executable, "-c", WITHOUT, str(ROOT / program)]
+    command = [sys.executable, "-c", WITHOUT, *program.split()]
     done = subprocess.run(command, env=environment(), cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 2, done.stderr
     assert done.stderr.count("\n") == 1 and "error: stable-baselines3 is not installed, torch is" in done.stderr
-    assert done.stderr.endswith(": pip install --upgrade 'elastica-gym[train]'\n")
+    assert done.stderr.endswith(": pip install 'elastica-gym[train]'\n")
+
+
+@pytest.mark.parametrize("program", ["agents/train.py", "scripts/score.py"])
+def test_help_needs_no_packages(program):
+    command = [sys.executable, "-c", WITHOUT, program, "--help"]
+    done = subprocess.run(command, env=environment(), cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0 and "Examples:" in done.stdout, done.stderr
 
 
 def test_old_packages(monkeypatch):
     there = importlib.metadata.version
     monkeypatch.setattr(importlib.metadata, "version", lambda p: "0.25.1rc2" if p == "rerun-sdk" else there(p))
     lowest = lowest_of("viz")["rerun-sdk"]
-    message = f"rerun-sdk 0.25.1rc2 is older than {lowest}: pip install --upgrade 'elastica-gym[viz]'"
+    message = f"rerun-sdk 0.25.1rc2 is older than {lowest}: pip install 'elastica-gym[viz]'"
     assert checks.missing_extra("viz") == message
 
 

@@ -75,4 +75,4 @@ def test_files_that_are_not_policies(tmp_path):
     assert f"There is no policy file {file}" in refused("agents.evaluate", "--policy", file, "--env", FORWARD)
     file.write_text("x = 1")
     assert "has no function policy(observation)" in refused("agents.evaluate", "--policy", file, "--env", FORWARD)
-    assert "--policy needs --env" in refused("agents.evaluate", "--policy", file)
+    assert f"{file} needs --env" in refused("agents.evaluate", "--policy", file)

@@ -38,6 +38,19 @@ def test_an_unknown_command_suggests_the_nearest():
     assert "Unknown command 'trian'; did you mean 'train'?" in output and "Traceback" not in output
 
 
+def test_the_version():
+    assert run("--version") == f"elastica-gym {elastica_gym.__version__}\n"
+
+
+def test_modules_in_the_current_folder_are_found(tmp_path):
+    """As the installed program starts, without Python's own entry for the current folder."""
+    (tmp_path / "my_module.py").write_text("print('imported')\n")
+    command = [sys.executable, "-P", "-c", PROGRAM, "train", "--env", "my_module:my_lab/Nothing-v0"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment(), capture_output=True, text=True)
+    assert done.returncode == 2 and "imported" in done.stdout
+    assert "Unknown environment 'my_lab/Nothing-v0'" in done.stderr
+
+
 def test_list_has_every_environment_and_policy():
     text = run("list")
     assert all(env_id in text for env_id in (*IDS, *GOAL_IDS))

@@ -61,6 +61,13 @@ def test_the_command_writes_picture_tables_and_recording(runs, tmp_path):
 
 def test_bad_input_is_named(runs, tmp_path):
     assert "Unknown setting 'gama'; did you mean 'gamma'?" in run("compare", *runs, "--by", "gama", status=2)
+    assert "is the folder of a run with evaluations" in run("compare", tmp_path, status=2)
+
+
+def test_what_is_no_run_with_evaluations_is_left_out(runs, tmp_path):
     (runs[0] / EVALUATIONS).write_text("")
-    assert "has no evaluations yet" in run("compare", *runs, status=2)
-    assert "is not the folder of a run" in run("compare", tmp_path, status=2)
+    (tmp_path / "empty").mkdir()
+    output = run("compare", *runs, tmp_path / "empty", "--out", tmp_path / "out")
+    assert f"Left out, as no run with evaluations: {runs[0]}, {tmp_path / 'empty'}" in output
+    rows = csv.DictReader((tmp_path / "out" / "scores.csv").open())
+    assert sum(int(row["runs"]) for row in rows) == len(runs) - 1

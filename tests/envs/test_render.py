@@ -184,6 +184,11 @@ def test_without_a_display_the_error_suggests_another_mode(monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "none of them")
     with pytest.raises(RuntimeError, match=r"'human' finds no display \(.*\); render_mode='rgb_array' draws"):
         gymnasium.make(SNAKE, render_mode="human")
+    for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    if sys.platform.startswith("linux"):
+        with pytest.raises(RuntimeError, match="'human' finds no display; render_mode='rgb_array' draws"):
+            gymnasium.make(SNAKE, render_mode="human")
 
 
 @pytest.mark.parametrize("mode", ["human", "rgb_array_list", "ansi"])
