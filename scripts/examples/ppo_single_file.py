@@ -163,9 +163,8 @@ def main() -> None:
                 optimizer.step()
         steps += a.rollout * a.num_envs
         last = float(np.mean(finished)) if finished else last
-        print(
-            f"steps {steps:>8,}  return {last:8.2f}  {steps / (time.perf_counter() - started):6.0f} steps/s", flush=True
-        )
+        known = f"{last:8.2f}" if np.isfinite(last) else f"{'-':>8}"
+        print(f"steps {steps:>8,}  return {known}  {steps / (time.perf_counter() - started):6.0f} steps/s", flush=True)
     envs.close()
 
 

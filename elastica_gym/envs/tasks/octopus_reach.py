@@ -9,6 +9,9 @@ Notes
 The gap is to the object as rods touch it, with domes of 0.05 m on its ends. Approaches add up to the total decrease of
 the gap, so hovering earns nothing.
 
+From most places on the arc, one lunge of half a second reaches the object; with ``spread="anywhere"`` the octopus has
+to turn or crawl.
+
 Version history
 ---------------
 v1: contact that conserves energy (contact forces act on nodes, by the weights of the closest points).
