@@ -62,29 +62,30 @@ def settings_of(runs: Sequence[Path], by: Sequence[str] = ()) -> list[Setting]:
     BadInputError
         If no folder is that of a run with evaluations, or none has a key.
     """
-    runs = _with_evaluations(runs)
-    values = [_values(read_config(run)) for run in runs]
+    compared = _with_evaluations(runs)
+    values = [_values(read_config(run)) for run, _ in compared]
     known = list(dict.fromkeys(key for each in values for key in each))
     keys = [choose("setting", key, known) for key in by] or [
         key for key in known if key not in NOT_SETTINGS and len({repr(each.get(key)) for each in values}) > 1
     ]
     found: dict[str, Setting] = {}
-    for run, each in zip(runs, values, strict=True):
+    for (run, table), each in zip(compared, values, strict=True):
         name = " ".join(f"{key}={each.get(key)}" for key in keys) or "all runs"
         setting = found.setdefault(name, Setting(name, [], []))
         setting.runs.append(run)
-        setting.tables.append(read_table(run / EVALUATIONS))
+        setting.tables.append(table)
     return list(found.values())
 
 
-def _with_evaluations(runs: Sequence[Path]) -> list[Path]:
-    """Return the runs that can be compared, and name the folders that are left out."""
-    kept = [run for run in runs if (run / "config.yml").is_file() and read_table(run / EVALUATIONS)]
-    left_out = [str(run) for run in runs if run not in kept]
+def _with_evaluations(runs: Sequence[Path]) -> list[tuple[Path, dict[str, Array]]]:
+    """Return the runs that can be compared, with their evaluations, and print the folders that are left out."""
+    tables = [read_table(run / EVALUATIONS) if (run / "config.yml").is_file() else {} for run in runs]
+    kept = [(run, table) for run, table in zip(runs, tables, strict=True) if table]
+    left_out = ", ".join(str(run) for run, table in zip(runs, tables, strict=True) if not table)
     if not kept:
-        raise BadInputError(f"None of {', '.join(left_out)} is the folder of a run with evaluations.")
+        raise BadInputError(f"None of {left_out} is the folder of a run with evaluations.")
     if left_out:
-        print(f"Left out, as no run with evaluations: {', '.join(left_out)}")
+        print(f"Left out, as no run with evaluations: {left_out}")
     return kept
 
 
